@@ -374,8 +374,8 @@ HudAir AirOf(FlightSession& flight) {
   shown.planet = planet.name;
   shown.visibility_km = std::min(1e-3 * VisibilityOf(air), 1e4);
   const double height_m = flight.eye().place.height_m;
-  shown.visibility_here_km =
-      std::min(1e-3 * VisibilityAt(air, height_m, flight.frames().FogAt(height_m)), 1e4);
+  shown.visibility_here_km = std::min(
+      1e-3 * VisibilityAt(air, height_m, flight.frames().MediaExtinctionAt(height_m)), 1e4);
   shown.aerosol_scale = flight.edits().air_choice().aerosol;
   shown.ozone_du = OzoneDobson(air);
   double albedo = 0.0;

@@ -38,7 +38,7 @@ double ExponentialLayer::AltitudeOf(const glm::dvec3& point) const {
 
 double ExponentialLayer::DensityAtAltitude(double altitude_m) const {
   if (altitude_m > thin_m_) return 0.0;
-  return shared::FogDensity(altitude_m - shape_.base_m, shape_.scale_height_m);
+  return shared::LayerDensity(altitude_m - shape_.base_m, shape_.scale_height_m);
 }
 
 double ExponentialLayer::ColumnAbove(double altitude_m) const {
@@ -52,8 +52,8 @@ double ExponentialLayer::ColumnUp(double altitude_m, double mu) const {
     const double rest = (shape_.top_m - altitude_m) * (shape_.planet_radius_m + shape_.top_m + r);
     return rest <= 0.0 ? 0.0 : rest / (r * mu + std::sqrt(r * r * mu * mu + rest));
   }
-  return shared::FogColumnUp(altitude_m, mu, DensityAtAltitude(altitude_m), shape_.scale_height_m,
-                             shape_.planet_radius_m);
+  return shared::LayerColumnUp(altitude_m, mu, DensityAtAltitude(altitude_m), shape_.scale_height_m,
+                               shape_.planet_radius_m);
 }
 
 namespace {

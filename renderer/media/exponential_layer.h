@@ -3,7 +3,7 @@
 // exp(-(h - base) / H) above the sphere, and 1 throughout if H is infinite. It is 0 above the top
 // of the atmosphere.
 //
-// This header also provides the functions of the shared text fog_layer.glsl in C++.
+// This header also provides the functions of the shared text exponential_layer.glsl in C++.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -20,7 +20,7 @@
 namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/shared_glsl/shared_begin.h"
-#include "renderer/media/fog_layer.glsl"
+#include "renderer/media/exponential_layer.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared

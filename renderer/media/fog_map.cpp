@@ -171,7 +171,7 @@ double FogElevationSine(double unit) {
 }
 
 void AddRays(const FogMarch& march, FogMap& map) {
-  const FogMapSize& size = map.size;
+  const LayerMapSize& size = map.size;
   const double sun_azimuth = std::atan2(map.view.light.seen.y, map.view.light.seen.x);
   const auto at = [&](int quantity, int depth, int azimuth, int elevation) {
     return static_cast<std::size_t>(
@@ -214,7 +214,7 @@ void AddSurfaces(const FogMarch& march, const ExponentialLayer& layer, FogMap& m
 }  // namespace
 
 FogMap MakeFogMap(const ExponentialLayer& fog, const SolvedAir& air, const FogView& view,
-                  const FogMapSize& size) {
+                  const LayerMapSize& size) {
   ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
   const FogMarch march(fog, air, view);
   const std::vector<double> chi = LegendreCoefficients(fog.optics().phase, 2);

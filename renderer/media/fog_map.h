@@ -23,16 +23,16 @@ namespace alpenglow::renderer {
 
 /// Resolution of a map. Its mean difference from MediaLight is 0.1 % by day and 0.5 % with the sun
 /// on the horizon, where light in fog decreases by a factor e every few metres (99 %: 2 % and 5 %;
-/// kFineFog: half of all these). The computation time is proportional to elevations times azimuths.
-struct FogMapSize {
+/// kFineLayerMap: half of all these). The computation time is proportional to elevations times azimuths.
+struct LayerMapSize {
   int elevations = 128;  // even: half of them above the horizon
   int azimuths = 16;     // from 0 to pi
   int depths = 12;
 
-  bool operator==(const FogMapSize&) const = default;
+  bool operator==(const LayerMapSize&) const = default;
 };
-inline constexpr FogMapSize kCoarseFog{48, 12, 8};
-inline constexpr FogMapSize kFineFog{192, 24, 16};
+inline constexpr LayerMapSize kCoarseLayerMap{48, 12, 8};
+inline constexpr LayerMapSize kFineLayerMap{192, 24, 16};
 
 /// Eye of a map and the light over it, the sun or the moon, in the frame east, north, up at the eye,
 /// on the sphere of the air's medium.
@@ -45,7 +45,7 @@ struct FogView {
 /// Table of the light in fog. It is immutable and needs no GPU.
 struct FogMap {
   FogView view;
-  FogMapSize size;
+  LayerMapSize size;
   /// A, B, G and K in this order: [((quantity * depths + depth) * azimuths + azimuth) * elevations
   /// + elevation].
   std::vector<glm::vec4> light;
@@ -64,7 +64,7 @@ struct FogMap {
 /// @param air  medium of at most four bands.
 /// tests/viewer/lamps/fog_map_test.cpp bounds the errors of rays against MediaLight.
 [[nodiscard]] FogMap MakeFogMap(const ExponentialLayer& fog, const SolvedAir& air,
-                                const FogView& view, const FogMapSize& size = {});
+                                const FogView& view, const LayerMapSize& size = {});
 
 /// Returns whether the map of one eye and sun is valid for others, to a few per cent: the eye is
 /// within a tenth of the fog's scale height, at most 100 m, and the sun within a tenth of a degree.

@@ -111,7 +111,7 @@ std::vector<ShaderPiece> SharedTexts() {
   }
   for (const char* name :
        {"renderer/procedural_mountains/lattice_noise.glsl", "renderer/material/ground_cover.glsl",
-        "renderer/material/reflectance.glsl", "renderer/media/fog_layer.glsl",
+        "renderer/material/reflectance.glsl", "renderer/media/exponential_layer.glsl",
         "renderer/terrain/land_chord.glsl"}) {
     pieces.push_back({name, std::string(renderer::EmbeddedText(name))});
   }

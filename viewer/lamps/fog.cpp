@@ -91,10 +91,11 @@ FogView FogViewOf(const CameraPose& eye, const DistantLight& light) {
 
 }  // namespace
 
-SceneFog::SceneFog(LocalMedia media, const FogMapSize& size, const FogUnits& units)
-    : media_(std::make_shared<const LocalMedia>(std::move(media))), size_(size), painter_(units) {}
+SceneFog::SceneFog(std::shared_ptr<const LocalMedia> media, const LayerMapSize& size,
+                   const MediaUnits& units)
+    : media_(std::move(media)), size_(size), painter_(units) {}
 
-void SceneFog::SetSize(const FogMapSize& size) {
+void SceneFog::SetSize(const LayerMapSize& size) {
   if (size == size_) return;
   size_ = size;
   air_ = nullptr;

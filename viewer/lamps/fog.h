@@ -28,22 +28,22 @@ struct FogBlock {
 };
 static_assert(sizeof(FogBlock) == 6 * sizeof(glm::vec4));
 
-/// Returns texts for a fragment stage, which follow SharedTexts(): FogTo(direction, distance_km)
+/// Returns texts for a fragment stage, which follow SharedTexts(): MediaTo(direction, distance_km)
 /// and the rest of fog.light.glsl. @param kind  kind of the fog's phase function.
 [[nodiscard]] std::vector<ShaderPiece> FogTexts(PhaseKind kind);
 
 /// Returns texts with these functions for scenes without fog.
 [[nodiscard]] std::vector<ShaderPiece> NoFogTexts();
 
-/// Binding points of the fog's data.
-struct FogUnits {
+/// Binding points of the data of media.
+struct MediaUnits {
   GLuint block = 9;
   int first = 13;  // first of four texture units: two for each light of the sky
 };
 
 class FogPainter {
  public:
-  explicit FogPainter(const FogUnits& units) : units_(units) {}
+  explicit FogPainter(const MediaUnits& units) : units_(units) {}
   void Connect(const ShaderProgram& program) const;
   /// Uploads a map.
   void Upload(const FogMap& map);
@@ -58,7 +58,7 @@ class FogPainter {
  private:
   void Bind(const FogBlock& block) const;
 
-  FogUnits units_;
+  MediaUnits units_;
   GlBuffer block_;
   GlTexture light_, surface_;
 };
@@ -66,10 +66,11 @@ class FogPainter {
 class SceneFog {
  public:
   /// @param media  media with a layer, the fog.
-  SceneFog(LocalMedia media, const FogMapSize& size, const FogUnits& units);
+  SceneFog(std::shared_ptr<const LocalMedia> media, const LayerMapSize& size,
+           const MediaUnits& units);
 
   /// Sets the size of maps from the next Follow or WaitUntilReady on.
-  void SetSize(const FogMapSize& size);
+  void SetSize(const LayerMapSize& size);
 
   /// Takes a finished map and requests a missing one. Call it once a frame. It waits only for the
   /// first map in a medium.
@@ -96,7 +97,7 @@ class SceneFog {
   void BeginIn(const std::shared_ptr<const SolvedAir>& air, double latitude_rad);
 
   std::shared_ptr<const LocalMedia> media_;
-  FogMapSize size_;
+  LayerMapSize size_;
   FogPainter painter_;
   std::shared_ptr<const SolvedAir> air_;  // medium of the maps; null: no map of this size yet
   std::optional<AsyncValue<FogView, FogMap>> maps_;

@@ -60,7 +60,7 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
   if (is_fine) text += "#define LAMP_GLOW_OF_SLOPES\n";
   if (layers[1].phase.kind == PhaseKind::kTable) text += "#define LAMP_MIE_TABLE\n";
   if (shape.HasLayer()) {
-    text += fmt::format("#define LAMP_FOG\n#define LAMP_PHASE_FOG(c, p) {}\n",
+    text += fmt::format("#define LAMP_LAYER\n#define LAMP_PHASE_LAYER(c, p) {}\n",
                         FormOf(layers[2].phase.kind).expression);
   }
   return text;

@@ -40,7 +40,7 @@ inline constexpr LampQuality kHighLamps{12, 1};
 /// Returns texts for a fragment stage, which follow SharedTexts() and view.block.glsl:
 /// LampsOnGround(point_m, normal, ray_width_m), LampAirlightRgb(direction, end_m),
 /// LampRayEnd(direction, surface_m).
-/// @param shape  lamps that determine the features of the shaders: tables, fog, phase functions.
+/// @param shape  lamps that determine the features of the shaders: tables, a layer, phase functions.
 [[nodiscard]] std::vector<ShaderPiece> LampTexts(const SceneLamps& shape,
                                                  const LampQuality& quality);
 

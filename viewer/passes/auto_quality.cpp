@@ -126,7 +126,7 @@ PaintSizes SizesOf(Quality quality) {
       sizes.land_detail = 64.0;
       sizes.shade = kLowShade;
       sizes.lamps = kLowLamps;
-      sizes.fog = kCoarseFog;
+      sizes.layer_map = kCoarseLayerMap;
       sizes.dropped_octaves = 1;
       break;
     case Quality::kMedium:
@@ -138,7 +138,7 @@ PaintSizes SizesOf(Quality quality) {
       sizes.land_detail = 1024.0;
       sizes.shade = kHighShade;
       sizes.lamps = kHighLamps;
-      sizes.fog = kFineFog;
+      sizes.layer_map = kFineLayerMap;
       sizes.sky_by_pixel = true;
       break;
   }

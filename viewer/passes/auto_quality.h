@@ -9,7 +9,7 @@
 #include <string>
 
 #include "lut/camera_tables/air_tables.h"
-#include "viewer/lamps/fog.h"
+#include "renderer/media/fog_map.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/shade/shafts.h"
 
@@ -107,7 +107,7 @@ struct PaintSizes {
   ShadeQuality shade = kMediumShade;
   LampQuality lamps = kMediumLamps;
   std::size_t most_lamps = kMostGpuLamps;
-  FogMapSize fog;
+  LayerMapSize layer_map;
   int dropped_octaves = 0;    // omitted octaves of the ground's detail
   bool sky_by_pixel = false;  // SkyByPixel instead of vertex light, once it is ready
 };

@@ -222,9 +222,8 @@ TableFigures FrameRenderer::Figures() const {
           scene.land().Figures()};
 }
 
-double FrameRenderer::FogAt(double height_m) const {
-  const SceneFog* fog = painter_.scene().fog();
-  return fog != nullptr ? fog->ExtinctionAt(height_m) : 0.0;
+double FrameRenderer::MediaExtinctionAt(double height_m) const {
+  return painter_.scene().media().ExtinctionAt(height_m);
 }
 
 }  // namespace alpenglow::viewer

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLong_s = 1e3;  // time after which all fades have ended
 
-// Returns the ground for lamps and fog, which must exist before the first picture. A landing light
+// Returns the ground for lamps and media, which must exist before the first picture. A landing light
 // does not need it.
 SceneGround LampGroundOf(const Scene& scene) {
   if (!scene.lights.empty() || !scene.layers.empty() || scene.town_zenith) return LoadGround(scene);
@@ -64,9 +64,7 @@ FixedScene::FixedScene(const Scene& scene, bool has_land)
       lamp_ground(LampGroundOf(scene)),
       drape(DrapeOf(scene, lamp_ground)),
       material(scene.ground, drape.colours, scene.medium.wavelengths_nm),
-      land_kind{has_land, scene.terrain.HasFineRelief()},
-      fog(LocalMedia(scene, lamp_ground, MediumAt(scene)).Only(false, true)),
-      fog_phase(fog.IsEmpty() ? std::nullopt : std::optional(fog.layer()->optics().phase.kind)) {}
+      land_kind{has_land, scene.terrain.HasFineRelief()} {}
 
 PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
                            const PaintSizes& sizes, FirstAir first_air)
@@ -79,20 +77,16 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       ground_(scene.ground, fixed_.drape.colours, {}),
       ground_textures_(air_.air()->multiple_scattering()),
       shade_(fixed_.ellipsoid),
+      media_(LocalMedia(scene, fixed_.lamp_ground, MediumAt(scene)), sizes.layer_map, kMediaUnits),
       awaits_land_(!land.IsEmpty()) {
   if (!land.range_centre) land_->BeginReading(first.eye.place);
-  if (fixed_.fog_phase) {
-    for (std::optional<SceneFog>* fog : {&fog_, &moon_fog_})
-      fog->emplace(fixed_.fog, sizes.fog, kFogUnits);
-  }
   shade_.SetSize(sizes.shade.size);
   if (fixed_.drape.colours) ground_textures_.SetDrape(TexelsOf(fixed_.drape));
 }
 
 void PaintedScene::Use(const PaintSizes& sizes) {
   sizes_ = sizes;
-  if (fog_) fog_->SetSize(sizes.fog);
-  if (moon_fog_) moon_fog_->SetSize(sizes.fog);
+  media_.SetSize(sizes.layer_map);
   air_.SetQuality(sizes.air);
   shade_.SetSize(sizes.shade.size);
   land_->SetDetail(sizes.land_detail, sizes.land_growth);
@@ -197,12 +191,10 @@ void PaintedScene::KeepUpEdges(const PaintedView& view, const DistantLight& key,
   land_->Use(MomentaryEdges{momentary_edges_, to_light, key.radius_rad});
 }
 
-void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
-  if (!fog_) return;
+void PaintedScene::KeepUpMedia(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
   for (const DistantLight& light : lights) {
-    SceneFog& fog = light.body == LightSource::kMoon ? *moon_fog_ : *fog_;
-    pace == Pace::kFollow ? fog.Follow(air_.air(), view.eye, light)
-                          : fog.WaitUntilReady(air_.air(), view.eye, light);
+    pace == Pace::kFollow ? media_.Follow(air_.air(), view.eye, light)
+                          : media_.WaitUntilReady(air_.air(), view.eye, light);
   }
 }
 
@@ -217,7 +209,7 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kFollow);
   if (sizes_.has_shafts) shade_.Follow(view.eye.place, lights.front(), kShadeUnit);
-  KeepUpFog(view, lights, Pace::kFollow);
+  KeepUpMedia(view, lights, Pace::kFollow);
 }
 
 void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& lights, int samples) {
@@ -232,7 +224,7 @@ void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& li
   KeepUpOpenSkies(lights, Pace::kWait);
   KeepUpEdges(view, lights.front(), kLong_s);
   if (sizes_.has_shafts) shade_.WaitUntilReady(view.eye.place, lights.front(), kShadeUnit);
-  KeepUpFog(view, lights, Pace::kWait);
+  KeepUpMedia(view, lights, Pace::kWait);
   awaits_land_ = false;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene prepared for drawing: its medium, terrain, terrain lighting, volumetric shadows and fog.
+// A scene prepared for drawing: its medium, terrain, terrain lighting, volumetric shadows and media.
 // Each part is computed on worker threads and follows the moving eye and sun.
 #pragma once
 
@@ -17,7 +17,7 @@
 #include "viewer/air/air_follower.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/open_sky_follower.h"
-#include "viewer/lamps/fog.h"
+#include "viewer/lamps/scene_media.h"
 #include "viewer/land/landscape.h"
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/frame_light.h"
@@ -42,12 +42,10 @@ struct FixedScene {
 
   GeodeticPosition place;
   Ellipsoid ellipsoid;
-  SceneGround lamp_ground;  // on which lamps and fog are placed
+  SceneGround lamp_ground;  // on which lamps and media are placed
   SceneDrape drape;
   GroundMaterial material;
   LandKind land_kind;
-  LocalMedia fog;                      // nothing without fog above the ground
-  std::optional<PhaseKind> fog_phase;  // nullopt without fog
 };
 
 /// All parts of a scene that are needed to draw it. Must be used on the thread whose OpenGL context
@@ -74,8 +72,8 @@ class PaintedScene {
   /// drawn then.
   [[nodiscard]] bool AwaitsLand() const { return awaits_land_; }
 
-  /// Collects finished work and requests missing parts. It does not wait, except for the first fog
-  /// in a new medium or under a moon.
+  /// Collects finished work and requests missing parts. It does not wait, except for the first
+  /// light of media in new air or under a moon.
   /// @param lights   as seen from the eye.
   /// @param seconds  time since the last call.
   void Update(const PaintedView& view, const LightsOfSky& lights, double seconds);
@@ -111,11 +109,7 @@ class PaintedScene {
   [[nodiscard]] bool HasEdgesOf(LightSource source) const {
     return source == casts_ && (momentary_edges_ == 1.0 ? land_->pass().HasHorizon() : has_edges_);
   }
-  /// The fog lit by a source. Null: no fog.
-  [[nodiscard]] const SceneFog* fog(LightSource source = LightSource::kSun) const {
-    if (source == LightSource::kMoon && moon_fog_) return &*moon_fog_;
-    return fog_ ? &*fog_ : nullptr;
-  }
+  [[nodiscard]] const SceneMedia& media() const { return media_; }
 
  private:
   /// Followers either do their work in the background (Update) or complete it (WaitUntilReady).
@@ -124,7 +118,7 @@ class PaintedScene {
   void KeepUpOpenSkies(const LightsOfSky& lights, Pace pace);
   [[nodiscard]] bool HasEdgesNear(const Vector<Ecef>& to_light) const;
   void KeepUpEdges(const PaintedView& view, const DistantLight& key, double seconds);
-  void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
+  void KeepUpMedia(const PaintedView& view, const LightsOfSky& lights, Pace pace);
   void UpdateHeights();
   void UpdateLight();
   void TakeSkyByPixel();
@@ -144,7 +138,7 @@ class PaintedScene {
   GroundTextures ground_textures_;
   SkyByPixel sky_by_pixel_;
   ShadeFollower shade_;
-  std::optional<SceneFog> fog_, moon_fog_;
+  SceneMedia media_;
   LightSource casts_ = LightSource::kSun;  // the shadow-casting light
   bool has_edges_ = false;                 // whether vertices have shadow edges for casts_
   double momentary_edges_ = 0.0;           // MomentaryEdges::share

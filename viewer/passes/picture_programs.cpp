@@ -16,7 +16,7 @@
 #include "viewer/air/air_follower.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/lamps/fog.h"
+#include "viewer/lamps/scene_media.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/shade/shafts.h"
 #include "viewer/shaders/pass_setup.h"
@@ -25,14 +25,14 @@ namespace alpenglow::viewer {
 namespace {
 
 ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
-  return {
-      "stage",
-      fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
-                  "#define OPEN_SKY_PASS 3\n"
-                  "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
-                  "#define HAS_FOG {}\n#define SKY_BY_PIXEL {}\n#define HAS_NIGHT {}\n",
-                  static_cast<int>(stage.pass), stage.has_shade ? 1 : 0, stage.has_lamps ? 1 : 0,
-                  kind.fog ? 1 : 0, stage.sky_by_pixel ? 1 : 0, stage.has_night ? 1 : 0)};
+  return {"stage",
+          fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
+                      "#define OPEN_SKY_PASS 3\n"
+                      "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
+                      "#define HAS_MEDIA {}\n#define SKY_BY_PIXEL {}\n#define HAS_NIGHT {}\n",
+                      static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,
+                      stage.has_lamps ? 1 : 0, kind.media.IsEmpty() ? 0 : 1,
+                      stage.sky_by_pixel ? 1 : 0, stage.has_night ? 1 : 0)};
 }
 
 void Append(std::vector<ShaderPiece>& texts, std::vector<ShaderPiece> pieces) {
@@ -55,11 +55,11 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   if (stage.other_has_set) texts.push_back({"set light", "#define OTHER_HAS_SET\n"});
   add(AirTexts());
   texts.push_back(DefinesOf(kind, stage));
-  add(kind.fog ? FogTexts(*kind.fog) : NoFogTexts());
-  // On the ground, the transmittance of sunlight includes that of the fog above.
-  if (kind.fog) {
-    texts.push_back(
-        {"fog on the ground", "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * FogSunLeft(h, mu))\n"});
+  add(MediaTexts(kind.media));
+  // On the ground, the transmittance of sunlight includes that of the media above.
+  if (!kind.media.IsEmpty()) {
+    texts.push_back({"media over the ground",
+                     "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * SunLeftByMedia(h, mu))\n"});
   }
   add(WithViewerPieces(
       {}, {"viewer/shaders/air.block.glsl", "viewer/shaders/gbuffer.octahedral.glsl",
@@ -89,8 +89,8 @@ int TexturesOf(const PictureKind& kind, const PictureStage& stage) {
   } else if (has_gloss) {
     textures += 1 + lights;
   }
-  if (kind.fog) textures += 2 * lights;
-  if (stage.has_shade) textures += kind.fog ? 2 : 1;
+  textures += kind.media.Textures(lights);
+  if (stage.has_shade) textures += kind.media.IsEmpty() ? 1 : 2;
   if (stage.has_lamps) textures += 6;
   if (stage.has_night && !is_land) textures += 1;
   return textures;
@@ -101,7 +101,7 @@ namespace {
 /// Returns advice on the parts of a scene that need textures; empty if it has none.
 std::string PartsToOmit(const PictureKind& kind) {
   std::vector<const char*> parts;
-  if (kind.fog) parts.push_back("[fog]");
+  if (!kind.media.IsEmpty()) parts.push_back("[fog]");
   if (kind.material.HasWater()) parts.push_back("water");
   if (kind.material.HasGloss() && !kind.material.HasWater()) parts.push_back("glossy ground");
   if (kind.material.drape() != nullptr) parts.push_back("the picture on the terrain");
@@ -274,7 +274,7 @@ void ConnectMaps(const ShaderProgram& program) {
   program.BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
   program.BindSampler("other_sky_on_surface", kOtherSkyOnSurfaceUnit);
   program.BindSampler("shaft_map", kShaftUnit);
-  program.BindSampler("fog_shaft_map", kFogShaftUnit);
+  program.BindSampler("media_shaft_map", kMediaShaftUnit);
   program.BindSampler("night_sky", kNightUnit);
   GroundTextures::Connect(program, kGroundUnit);
   SkyByPixel::Connect(program, kSkyByPixelUnit);
@@ -289,7 +289,7 @@ PicturePrograms::PicturePrograms(const PaintedScene& scene, const LampPainter& l
     : scene_(scene), lamps_(lamps), shafts_(shafts), units_(TextureUnitsOfDriver()) {}
 
 PictureKind PicturePrograms::Kind() const {
-  return {scene_.fixed().material, lamps_, scene_.fixed().land_kind, scene_.fixed().fog_phase};
+  return {scene_.fixed().material, lamps_, scene_.fixed().land_kind, scene_.media().kind()};
 }
 
 PictureStage PicturePrograms::Fitting(const PictureStage& stage) {
@@ -310,7 +310,7 @@ ShaderProgram PicturePrograms::Made(const PictureStage& stage) const {
   ConnectBlocks(made);
   ConnectMaps(made);
   if (stage.has_lamps) lamps_.Connect(made);
-  if (scene_.fog() != nullptr) scene_.fog()->Connect(made);
+  scene_.media().Connect(made);
   return made;
 }
 

@@ -30,8 +30,8 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/lamps/fog.h"
 #include "viewer/lamps/lamp_painter.h"
+#include "viewer/lamps/scene_media.h"
 #include "viewer/passes/frame.h"
 #include "viewer/passes/frame_light.h"
 #include "viewer/passes/painted_scene.h"
@@ -48,20 +48,20 @@ enum PictureUnit {
   kSkyOnSurfaceUnit,
   kOtherSkyOnSurfaceUnit,
   kShaftUnit,
-  kFogShaftUnit,
+  kMediaShaftUnit,
   kShadeUnit,
   kUploadUnit,
   kAirUnit,
   kOtherAirUnit = kAirUnit + AirTextures::kUnits,
   kGroundUnit = kOtherAirUnit + AirTextures::kUnits,
   kLampUnit = kGroundUnit + GroundTextures::kUnits,
-  kFogUnit = kLampUnit + 6,
-  kNightUnit = kFogUnit + 4,
+  kMediaUnit = kLampUnit + 6,
+  kNightUnit = kMediaUnit + 4,
   kSkyByPixelUnit = kNightUnit + 1,
 };
 
 inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
-inline constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
+inline constexpr MediaUnits kMediaUnits{kMediaBinding, kMediaUnit};
 
 /// Identifies one program of the picture. kUnoccludedSky is the sky above the horizon, see
 /// RowsOfPlanet.
@@ -91,7 +91,7 @@ struct PictureKind {
   const GroundMaterial& material;
   const LampPainter& lamps;
   LandKind land;
-  std::optional<PhaseKind> fog;  // its phase function
+  MediaKind media;
 };
 
 /// Returns the texts of a stage that precede picture.frag.glsl.

@@ -19,12 +19,13 @@ namespace {
 
 ShaftPass ConnectedShafts(const PaintedScene& scene) {
   std::vector<ShaderPiece> texts = AirTexts();
-  if (scene.fixed().fog_phase)
-    for (ShaderPiece& piece : FogTexts(*scene.fixed().fog_phase)) texts.push_back(std::move(piece));
-  ShaftPass pass(std::move(texts), scene.fixed().fog_phase.has_value());
+  const MediaKind media = scene.media().kind();
+  if (!media.IsEmpty())
+    for (ShaderPiece& piece : MediaTexts(media)) texts.push_back(std::move(piece));
+  ShaftPass pass(std::move(texts), !media.IsEmpty());
   pass.program().BindBlock("View", kViewBinding);
   AirTextures::Prepare(pass.program(), kAirUnit, kTablesBinding);
-  if (scene.fog() != nullptr) scene.fog()->Connect(pass.program());
+  scene.media().Connect(pass.program());
   return pass;
 }
 
@@ -253,7 +254,7 @@ std::vector<PictureStage> StagesAfter(const PictureStage& stage, const FrameSky&
 void SkyPainter::MakeOneReady(const Frame& frame, const PictureStage& stage) {
   for (const PictureStage& next : StagesAfter(stage, *frame.sky))
     if (programs_.MakeReady(programs_.Fitting(next))) return;
-  stars_.MakeReady(frame.view, scene_.fog(), scene_.fixed().fog_phase);
+  stars_.MakeReady(frame.view, scene_.media());
 }
 
 // Returns the number of rows below the horizon. The horizon is that of straight rays over a planet
@@ -393,8 +394,7 @@ void SkyPainter::PaintBodiesOver(const RenderTarget& target, const DepthPrepass&
   PaintSmallDisks(frame, target);
   if (stars_.HasAny()) {
     const BesideLand beside;
-    stars_.Paint(view, *frame.sky, StarPainter::Land::kByDepth, scene_.fog(),
-                 scene_.fixed().fog_phase);
+    stars_.Paint(view, *frame.sky, StarPainter::Land::kByDepth, scene_.media());
   }
   CheckGl("SkyPainter::PaintBodiesOver");
 }
@@ -430,8 +430,7 @@ void SkyPainter::BindMaps(const Frame& frame) {
   surface_->BindTexture(kSkyOnSurfaceUnit, sky_of(first));
   surface_->BindTexture(kOtherSkyOnSurfaceUnit, sky_of(other));
   night_sky_map_.Bind(kNightUnit);
-  if (scene_.fog() == nullptr) return;
-  scene_.fog(first.body)->Bind(frame.view.eye, first, *scene_.fog(other.body), other);
+  scene_.media().Bind(frame.view.eye, first, other);
 }
 
 // Refraction lets the planet be seen farther than its straight horizon, by less than a quarter.
@@ -484,8 +483,7 @@ bool SkyPainter::HasNightSkyMap() const {
 void SkyPainter::PaintStars(const Frame& frame) {
   if (!stars_.HasAny()) return;
   Begin("stars");
-  stars_.Paint(frame.view, *frame.sky, StarPainter::Land::kBySurface, scene_.fog(),
-               scene_.fixed().fog_phase);
+  stars_.Paint(frame.view, *frame.sky, StarPainter::Land::kBySurface, scene_.media());
 }
 
 void SkyPainter::PaintSample(const Frame& frame, Bodies bodies, const PixelRay& ray) {

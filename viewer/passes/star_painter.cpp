@@ -11,7 +11,6 @@
 #include "atmosphere/math/constants.h"
 #include "renderer/picture/sky_pixels.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/lamps/fog.h"
 #include "viewer/passes/picture_programs.h"
 #include "viewer/shaders/pass_setup.h"
 
@@ -199,11 +198,10 @@ void StarPainter::WaitUntilReady(const PaintedView& view, const FrameSky& sky,
   maker_.Update();
 }
 
-void StarPainter::Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
+void StarPainter::Connect(const SceneMedia& media) {
   if (program_) return;
   std::vector<ShaderPiece> texts = AirTexts();
-  for (ShaderPiece& piece : fog_phase ? FogTexts(*fog_phase) : NoFogTexts())
-    texts.push_back(std::move(piece));
+  for (ShaderPiece& piece : MediaTexts(media.kind())) texts.push_back(std::move(piece));
   program_.emplace(WithViewerPieces(std::move(texts), {"viewer/shaders/air.block.glsl",
                                                        "viewer/shaders/star.vert.glsl"}),
                    WithViewerPieces({}, {"viewer/shaders/star.frag.glsl"}), kAttributes);
@@ -211,7 +209,7 @@ void StarPainter::Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phas
   program_->BindBlock("View", kViewBinding);
   program_->BindSampler("surface_map", kSurfaceUnit);
   AirTextures::Prepare(*program_, kAirUnit, kTablesBinding);
-  if (fog != nullptr) fog->Connect(*program_);
+  media.Connect(*program_);
 }
 
 void StarPainter::Draw(const std::vector<StarPoint>& points, const PaintedView& view,
@@ -238,10 +236,9 @@ void StarPainter::Draw(const std::vector<StarPoint>& points, const PaintedView& 
 }
 
 // The draw uses a star without light and size.
-void StarPainter::MakeReady(const PaintedView& view, const SceneFog* fog,
-                            std::optional<PhaseKind> fog_phase) {
+void StarPainter::MakeReady(const PaintedView& view, const SceneMedia& media) {
   if (program_) return;
-  Connect(fog, fog_phase);
+  Connect(media);
   Draw({StarPoint{}}, view, Land::kBySurface);
 }
 
@@ -266,10 +263,10 @@ std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const FrameSky&
 }
 
 void StarPainter::Paint(const PaintedView& view, const FrameSky& sky, Land land,
-                        const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
+                        const SceneMedia& media) {
   const std::vector<StarPoint> points = PointsIn(view, sky);
   if (points.empty()) return;
-  Connect(fog, fog_phase);
+  Connect(media);
   Draw(points, view, land);
   CheckGl("StarPainter::Paint");
 }

@@ -23,7 +23,7 @@
 #include "renderer/illumination/night_light.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
-#include "viewer/lamps/fog.h"
+#include "viewer/lamps/scene_media.h"
 #include "viewer/passes/frame_light.h"
 #include "viewer/passes/painted_view.h"
 
@@ -79,16 +79,14 @@ class StarPainter {
   [[nodiscard]] bool HasAny() const { return sky_lux_ > 0.0 && maker_.value(); }
   /// Draws once with the program if it has not been drawn yet. Drivers finish compiling it then,
   /// which takes tenths of a second.
-  void MakeReady(const PaintedView& view, const SceneFog* fog, std::optional<PhaseKind> fog_phase);
+  void MakeReady(const PaintedView& view, const SceneMedia& media);
   /// Returns the pixels that stars cover in a picture of a view.
   [[nodiscard]] std::vector<PixelBox> Seen(const PaintedView& view, const FrameSky& sky) const;
   /// Source of occlusion by land: the surface map, which has the size of the target, at the pixel
   /// of the star's centre; or the depth of the target for each pixel, if the depth test is enabled.
   enum class Land { kBySurface, kByDepth };
   /// Adds the stars to the bound target. Surface map, air and blocks must be bound.
-  /// @param fog  null: none.
-  void Paint(const PaintedView& view, const FrameSky& sky, Land land, const SceneFog* fog,
-             std::optional<PhaseKind> fog_phase);
+  void Paint(const PaintedView& view, const FrameSky& sky, Land land, const SceneMedia& media);
 
  private:
   struct Request {
@@ -105,7 +103,7 @@ class StarPainter {
 
   [[nodiscard]] bool IsNight(const FrameSky& sky, const std::shared_ptr<const SolvedAir>& air);
   [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
-  void Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
+  void Connect(const SceneMedia& media);
   [[nodiscard]] std::vector<StarPoint> PointsIn(const PaintedView& view, const FrameSky& sky) const;
   void Draw(const std::vector<StarPoint>& points, const PaintedView& view, Land land) const;
 

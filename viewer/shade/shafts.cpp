@@ -85,14 +85,15 @@ void ShadeTexture::Bind(const ShaderProgram& program, int unit, const glm::dmat4
   glUniform1i(program.Uniform("shade_steps"), steps.steps);
 }
 
-std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_fog) {
+std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_media) {
   air.push_back(
-      {"fog of shafts",
-       fmt::format("#define HAS_FOG {}\n#define LEFT_BY_FOG(direction, km) {}\n", has_fog ? 1 : 0,
-                   has_fog ? "FogTransmittance(direction, min(km, kOutOfFog_km))" : "1.0")});
+      {"media of shafts",
+       fmt::format("#define HAS_MEDIA {}\n#define LEFT_BY_MEDIA(direction, km) {}\n",
+                   has_media ? 1 : 0,
+                   has_media ? "MediaTransmittance(direction, min(km, kOutOfMedia_km))" : "1.0")});
   std::vector<std::string> files{"viewer/shaders/shafts.march.glsl",
                                  "viewer/shaders/shafts.texel.glsl"};
-  if (has_fog) files.emplace_back("viewer/shaders/shafts.fog_march.glsl");
+  if (has_media) files.emplace_back("viewer/shaders/shafts.media_march.glsl");
   return WithViewerPieces(std::move(air), files);
 }
 
@@ -101,9 +102,9 @@ std::vector<ShaderPiece> ShaftTexts() {
       {}, {"viewer/shaders/shafts.texel.glsl", "viewer/shaders/shafts.picture.glsl"});
 }
 
-ShaftPass::ShaftPass(std::vector<ShaderPiece> air, bool has_fog)
-    : has_fog_(has_fog),
-      program_(FullScreenProgram(WithViewerPieces(ShaftPassTexts(std::move(air), has_fog),
+ShaftPass::ShaftPass(std::vector<ShaderPiece> air, bool has_media)
+    : has_media_(has_media),
+      program_(FullScreenProgram(WithViewerPieces(ShaftPassTexts(std::move(air), has_media),
                                                   {"viewer/shaders/shafts.frag.glsl"}))) {}
 
 void ShaftPass::Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye, int width,
@@ -112,7 +113,7 @@ void ShaftPass::Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye,
   scale_ = detail.scale;
   const auto part = [&](int side) { return (side + scale_ - 1) / scale_; };
   if (!map_ || map_->width() != part(width) || map_->height() != part(height)) {
-    const std::vector<PixelFormat> maps(has_fog_ ? 2 : 1, PixelFormat::kRgba32F);
+    const std::vector<PixelFormat> maps(has_media_ ? 2 : 1, PixelFormat::kRgba32F);
     map_.emplace(part(width), part(height), maps, RenderTarget::Depth::kNone);
   }
   map_->Bind();
@@ -128,10 +129,10 @@ void ShaftPass::Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye,
 void ShaftPass::Bind(const ShaderProgram& picture, int unit) const {
   ALPENGLOW_ENSURE(map_.has_value(), ==, true);
   map_->BindTexture(unit);
-  if (has_fog_) map_->BindTexture(unit + 1, 1);
+  if (has_media_) map_->BindTexture(unit + 1, 1);
   picture.Use();
   glUniform1i(picture.Uniform("shaft_map"), unit);
-  glUniform1i(picture.Uniform("fog_shaft_map"), unit + 1);
+  glUniform1i(picture.Uniform("media_shaft_map"), unit + 1);
   const float step = 1.0F / static_cast<float>(scale_);
   const float first = 0.5F + static_cast<float>(scale_ / 2);  // pixel of the first ray
   glUniform2f(picture.Uniform("shaft_place"), step, -first * step);

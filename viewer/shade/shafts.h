@@ -91,8 +91,9 @@ class ShaftPass {
  public:
   /// @param air      texts that declare View and define SingleTo (shafts.march.glsl) and
   ///   SkyRadiance. The caller binds their blocks and samplers in program().
-  /// @param has_fog  whether FogTexts follow them. Shadows then also remove sunlight from fog.
-  explicit ShaftPass(std::vector<ShaderPiece> air, bool has_fog = false);
+  /// @param has_media  whether MediaTexts follow them. Shadows then also remove sunlight from
+  /// media.
+  explicit ShaftPass(std::vector<ShaderPiece> air, bool has_media = false);
 
   [[nodiscard]] const ShaderProgram& program() const { return program_; }
 
@@ -110,7 +111,7 @@ class ShaftPass {
   void Bind(const ShaderProgram& picture, int unit) const;
 
  private:
-  bool has_fog_;
+  bool has_media_;
   ShaderProgram program_;
   GlVertexArray no_vertices_;
   std::optional<RenderTarget> map_;
@@ -119,7 +120,7 @@ class ShaftPass {
 
 /// Returns the texts of the pass that precede shafts.frag.glsl. The parameters are those of
 /// ShaftPass.
-[[nodiscard]] std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_fog);
+[[nodiscard]] std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_media);
 
 /// Returns the texts that a fragment shader of the picture needs to call TakenByShade.
 [[nodiscard]] std::vector<ShaderPiece> ShaftTexts();

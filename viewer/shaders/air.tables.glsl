@@ -34,7 +34,7 @@ uniform sampler2D air_extinction;
 uniform sampler3D air_single;
 uniform sampler3D air_diffuse;
 uniform sampler2D air_phase;  // phase function of the aerosol with its light of all orders
-uniform sampler2D air_to_sun;  // row 0: straight rays; row 1: refracted beam for ground and fog
+uniform sampler2D air_to_sun;  // row 0: straight rays; row 1: refracted beam for ground and media
 
 // The tables of the second light. Transmittance is taken from those of the first, and so is the
 // geometry of rays (AirStretch): both tables are of one eye, and the places for which they were made

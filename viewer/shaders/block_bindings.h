@@ -17,7 +17,7 @@ enum BlockBinding : GLuint {
   kSkyByPixelBinding,
   kTablesBinding,
   kLampsBinding,
-  kFogBinding,
+  kMediaBinding,
   kOtherTablesBinding,
   kOtherGroundLightBinding,
   kLandBinding,

@@ -2,9 +2,9 @@
 // Sunlight and skylight scattered by fog, from the map of fog.h, and the transmittance of fog:
 // FogBlock of fog.h. Frame: east, north, up at the eye. Lengths are in kilometres; light is per
 // unit solar irradiance. Fog is grey.
-#define FOG_STRETCHES 4
+#define MEDIA_STRETCHES 4
 
-const float kOutOfFog_km = 1e3;  // length of rays that hit nothing
+const float kOutOfMedia_km = 1e3;  // length of rays that hit nothing
 
 layout(std140) uniform Fog {
   vec4 fog_layer;  // extinction at the base [1/km]; scale height, 0 if homogeneous; base,
@@ -26,12 +26,13 @@ uniform sampler2D other_fog_surface_map;
 #define FOG_SUN OF_LIGHT(fog_sun, fog_other_sun)
 
 float FogDensityAt(float h) {
-  return fog_layer.y > 0.0 ? FogDensity(h - fog_layer.z, fog_layer.y) : h < fog_layer.w ? 1.0 : 0.0;
+  if (fog_layer.y > 0.0) return LayerDensity(h - fog_layer.z, fog_layer.y);
+  return h < fog_layer.w ? 1.0 : 0.0;
 }
 
 // Returns the column from altitude h to space, for a direction with mu >= 0.
 float FogColumnOut(float h, float mu) {
-  if (fog_layer.y > 0.0) return FogColumnUp(h, mu, FogDensityAt(h), fog_layer.y, fog_eye.y);
+  if (fog_layer.y > 0.0) return LayerColumnUp(h, mu, FogDensityAt(h), fog_layer.y, fog_eye.y);
   return h < fog_layer.w ? DistanceUpTo(h, mu, fog_layer.w, fog_eye.y) : 0.0;
 }
 
@@ -43,7 +44,7 @@ float FogColumnToSpace(float h, float mu) {
 }
 
 // Returns the optical depth along a view ray.
-float FogDepthTo(vec3 direction, float distance_km) {
+float MediaDepthTo(vec3 direction, float distance_km) {
   float h = fog_eye.x;
   float mu = direction.z;
   float h_end = AltitudeAlongRay(h, mu, distance_km, fog_eye.y);
@@ -58,15 +59,15 @@ float FogDepthOfRay(vec3 direction) {
   if (GroundClearance(fog_eye.x, direction.z, fog_eye.y) <= 0.0)
     return fog_layer.x * FogColumnToSpace(fog_eye.x, direction.z);
   float far = DistanceDownTo(fog_eye.x, min(direction.z, -1e-9), 0.0, fog_eye.y);
-  return FogDepthTo(direction, far);
+  return MediaDepthTo(direction, far);
 }
 
 // Returns the transmittance of the fog up to a distance.
-float FogTransmittance(vec3 direction, float distance_km) {
-  return exp(-FogDepthTo(direction, distance_km));
+float MediaTransmittance(vec3 direction, float distance_km) {
+  return exp(-MediaDepthTo(direction, distance_km));
 }
 
-struct FogAlong {
+struct MediaAlong {
   vec4 transmittance;
   vec4 radiance;  // of sun and sky, scattered by the fog [1/sr]
 };
@@ -91,8 +92,8 @@ vec4 FogQuantity(vec3 place, float number) {
 
 // Returns the scattered light of the sun alone, above ground without shadows. Terrain shadows
 // remove the light that comes from shadowed stretches of the ray.
-vec4 FogSunTo(vec3 direction, float distance_km) {
-  float taken = 1.0 - FogTransmittance(direction, distance_km);
+vec4 MediaSunTo(vec3 direction, float distance_km) {
+  float taken = 1.0 - MediaTransmittance(direction, distance_km);
   vec3 place = FogPlace(direction, taken);
   float cosine = dot(direction, FOG_SUN.xyz);
   return taken * (FOG_PHASE(cosine, fog_phase) * FogQuantity(place, 0.0) +
@@ -100,14 +101,14 @@ vec4 FogSunTo(vec3 direction, float distance_km) {
                   FogQuantity(place, 2.0));
 }
 
-FogAlong FogTo(vec3 direction, float distance_km) {
-  float left = FogTransmittance(direction, distance_km);
+MediaAlong MediaTo(vec3 direction, float distance_km) {
+  float left = MediaTransmittance(direction, distance_km);
   vec3 place = FogPlace(direction, 1.0 - left);
   float cosine = dot(direction, FOG_SUN.xyz);
   vec4 source = FOG_PHASE(cosine, fog_phase) * FogQuantity(place, 0.0) +
                 PhaseHenyeyGreenstein(cosine, FOG_SUN.w) * FogQuantity(place, 1.0) +
                 FogQuantity(place, 2.0) + FogQuantity(place, 3.0);
-  return FogAlong(vec4(left), (1.0 - left) * source);
+  return MediaAlong(vec4(left), (1.0 - left) * source);
 }
 
 // Returns the distance at which fog around the eye reaches an optical depth, assuming a flat ground.
@@ -142,7 +143,7 @@ float FogDistanceFromAbove(float mu, float share, float distance_km) {
 
 // Returns the distance at which the fog reaches an optical depth along a ray.
 // @param whole  optical depth of the fog on the ray.
-float FogDistanceOf(vec3 direction, float depth, float whole, float distance_km) {
+float MediaDistanceOf(vec3 direction, float depth, float whole, float distance_km) {
   const float kAbove = 4.0;  // scale heights over the lowest point of the ray
   float h = fog_eye.x, mu = direction.z, radius = fog_eye.y;
   float far;
@@ -165,7 +166,7 @@ float FogDistanceOf(vec3 direction, float depth, float whole, float distance_km)
 // beyond the place where the light increases and the fog ends. Its contribution in excess of `left`
 // is at most `fade` times the light of the stretch before, as if the transmittance of the fog
 // continued to decrease there at the previous rate.
-struct FogStretches {
+struct MediaStretches {
   vec4 distance_km;
   vec4 weight;  // with at most `left` for the last stretch
   float rest;   // remaining weight of the last stretch, by Simpson's rule
@@ -174,11 +175,11 @@ struct FogStretches {
 
 // Returns the mean transmittance between two distances at which it is a and b.
 float FogMean(vec3 direction, float from_km, float to_km, float a, float b) {
-  return (a + 4.0 * FogTransmittance(direction, 0.5 * (from_km + to_km)) + b) / 6.0;
+  return (a + 4.0 * MediaTransmittance(direction, 0.5 * (from_km + to_km)) + b) / 6.0;
 }
 
-FogStretches FogStretchesTo(vec3 direction, float distance_km) {
-  float whole = FogDepthTo(direction, distance_km);
+MediaStretches MediaStretchesTo(vec3 direction, float distance_km) {
+  float whole = MediaDepthTo(direction, distance_km);
   float left = exp(-whole);
   vec4 ends;
   vec4 at;
@@ -186,8 +187,8 @@ FogStretches FogStretchesTo(vec3 direction, float distance_km) {
   vec3 shares = direction.z < 0.0 ? vec3(0.97, 0.5, 0.02) : vec3(0.5, 0.12, 0.015);
   for (int i = 0; i < 3; ++i) {
     at[i] =
-        FogDistanceOf(direction, -log(left + shares[i] * (1.0 - left)), whole, distance_km);
-    ends[i] = FogTransmittance(direction, at[i]);
+        MediaDistanceOf(direction, -log(left + shares[i] * (1.0 - left)), whole, distance_km);
+    ends[i] = MediaTransmittance(direction, at[i]);
   }
   at.w = distance_km;
   ends.w = left;
@@ -199,29 +200,29 @@ FogStretches FogStretchesTo(vec3 direction, float distance_km) {
   mean.w = left;
   float fall = log(max(ends.y - left, 1e-20) / max(ends.z - left, 1e-20));
   float fade = fall > 1e-3 ? (ends.z - left) / fall : 0.0;
-  return FogStretches(at, mean - vec4(mean.yzw, 0.0), rest, fade);
+  return MediaStretches(at, mean - vec4(mean.yzw, 0.0), rest, fade);
 }
 
 // Returns the light of the last stretch in excess of `left`.
 // @param all, light, before  light of the whole path and up to the ends of the two stretches before
 //   the last.
-vec4 FogRest(FogStretches stretches, vec4 all, vec4 light, vec4 before) {
+vec4 MediaRest(MediaStretches stretches, vec4 all, vec4 light, vec4 before) {
   return max(min(stretches.rest * (all - light), stretches.fade * (light - before)), vec4(0.0));
 }
 
 // Returns the transmittance of fog for sunlight at the ground; mu_s is of a sun above the horizon.
-float FogSunLeft(float h, float mu_s) {
+float SunLeftByMedia(float h, float mu_s) {
   return exp(-fog_eye.w * fog_layer.x * FogColumnToSpace(h, mu_s));
 }
 
 float FogDepthAbove(float h) { return min(fog_layer.x * FogColumnOut(h, 1.0), fog_eye.z); }
 
 // Returns the transmittance of fog for the sky's irradiance.
-float FogSkyLeft(float h) { return exp(-fog_eye.w * FogDepthAbove(h) * 1.66666667); }
+float SkyLeftByMedia(float h) { return exp(-fog_eye.w * FogDepthAbove(h) * 1.66666667); }
 
 // Returns the irradiance of a surface by light that the fog scatters.
 // @param cos_up  of the surface's normal.
-vec4 FogOnSurface(float h, float cos_up) {
+vec4 MediaOnSurface(float h, float cos_up) {
   float unit = sqrt(sqrt(FogDepthAbove(h) / max(fog_eye.z, 1e-9)));
   float x = TexelFromUnit(unit, float(textureSize(fog_surface_map, 0).x));
   vec4 level = TEXEL_OF_LIGHT(fog_surface_map, other_fog_surface_map, vec2(x, 0.25));

@@ -19,7 +19,7 @@ struct Lamp {
   vec4 profile;    // cosines of the inner and outer angle of a cone; distance;
                    // fourth: 1 if the eye is inside the lamp
   vec4 up;         // vertical of its air; altitude of the eye
-  vec4 at_eye;     // densities of molecules, aerosol, fog; altitude of the lamp
+  vec4 at_eye;     // densities of molecules, aerosol, layer; altitude of the lamp
   vec4 at_lamp;    // densities at the lamp; its own radius
   vec4 glow;       // mean of its profile; layer of glow_map; size of its core, 0: none
   vec4 shade;      // layer of lamp_shades, -1: none; first layer and number of levels in
@@ -30,14 +30,14 @@ layout(std140) uniform Lamps {
   vec4 lamp_count;      // number of lamps; angles at which cores start to fade and end [rad];
                         // number of isotropic lamps, which come first
   vec4 lamp_planet;     // radius; altitude of the eye [km]; pixels between rays of the lattice
-  vec4 lamp_falls;      // inverse scale heights of molecules, aerosol, fog [1/m]
+  vec4 lamp_falls;      // inverse scale heights of molecules, aerosol, layer [1/m]
   vec4 lamp_bases;      // altitudes at which the densities are 1 [m]
   vec4 lamp_molecules;  // scattering at density 1 [1/m]
   vec4 lamp_aerosol;    // scattering
   vec4 lamp_dimming;    // extinction of aerosol
-  vec4 lamp_fog;        // scattering and extinction of fog
+  vec4 lamp_layer;        // scattering and extinction of the layer
   vec4 lamp_mie_phase;  // g, g of the second lobe, its weight, alpha
-  vec4 lamp_fog_phase;
+  vec4 lamp_layer_phase;
   vec4 lamp_red;  // rows of the matrix to linear sRGB [cd m^-2 per W m^-2 sr^-1 nm^-1]
   vec4 lamp_green;
   vec4 lamp_blue;
@@ -78,7 +78,7 @@ float LampPhaseMie(float cosine, float angle) {
 vec3 LampLogDensities(float z) {
   vec3 log_density = vec3(LayerLogDensity(z - lamp_bases.x, lamp_falls.x),
                           LayerLogDensity(z - lamp_bases.y, lamp_falls.y), 0.0);
-#ifdef LAMP_FOG
+#ifdef LAMP_LAYER
   log_density.z = LayerLogDensity(z - lamp_bases.z, lamp_falls.z);
 #endif
   return log_density;
@@ -89,18 +89,18 @@ vec3 LampColumns(float span, vec3 log_from, vec3 from, vec3 log_to, vec3 to) {
   vec3 rises = log_from - log_to;
   vec3 columns = vec3(LampColumn(span, from.x, to.x, rises.x),
                       LampColumn(span, from.y, to.y, rises.y), 0.0);
-#ifdef LAMP_FOG
+#ifdef LAMP_LAYER
   columns.z = LampColumn(span, from.z, to.z, rises.z);
 #endif
   return columns;
 }
 
 // Returns the optical depth, at most a value of negligible transmittance. The depths of a wall of
-// fog would overflow, and their differences would be NaN.
+// a layer would overflow, and their differences would be NaN.
 vec4 LampDepth(vec3 columns) {
   vec4 depth = lamp_molecules * columns.x + lamp_dimming * columns.y;
-#ifdef LAMP_FOG
-  depth += lamp_fog.y * columns.z;
+#ifdef LAMP_LAYER
+  depth += lamp_layer.y * columns.z;
 #endif
   return min(depth, vec4(1e4));
 }
@@ -276,8 +276,8 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
                    LampColumns(away, log_lamp, lamp.at_lamp.xyz, log_density, density);
     vec4 source = lamp_molecules * (density.x * PhaseRayleigh(cosine)) +
                   lamp_aerosol * (density.y * LampPhaseMie(cosine, angle));
-#ifdef LAMP_FOG
-    source += lamp_fog.x * density.z * LAMP_PHASE_FOG(cosine, lamp_fog_phase);
+#ifdef LAMP_LAYER
+    source += lamp_layer.x * density.z * LAMP_PHASE_LAYER(cosine, lamp_layer_phase);
 #endif
     float weight = lamp_gauss[i].y * angle;
     if (shaped && !inside) weight *= LampShare(lamp, sine * across - cosine * along);

@@ -7,7 +7,7 @@
 //   TWO_LIGHTS    defined if there is a second light, which casts no shadows (frame_light.h)
 //   OTHER_HAS_SET  defined if that light sends no beam to the ground (HasSetOnGround)
 //   HAS_NIGHT     light of the night sky on land, air and sky
-//   HAS_SHADE, HAS_LAMPS, HAS_FOG
+//   HAS_SHADE, HAS_LAMPS, HAS_MEDIA
 //   SKY_BY_PIXEL  irradiance by the sky on land is computed here (sky_by_pixel.irradiance.glsl), not by vertex
 in vec2 screen;
 out vec4 picture;
@@ -21,31 +21,31 @@ uniform sampler2D other_sky_on_surface;
 // Returns whether the current light casts shadows.
 bool CastsShadows() { return OF_LIGHT(true, false); }
 
-// Returns the light of the air before a distance, attenuated by fog. `all` is that of the whole
-// path without fog.
-vec4 AirInFog(vec3 direction, float distance_km, vec4 all) {
-#if HAS_FOG
-  FogStretches stretches = FogStretchesTo(direction, distance_km);
-  vec4 sum = stretches.weight[FOG_STRETCHES - 1] * all;
+// Returns the light of the air before a distance, attenuated by media. `all` is that of the whole
+// path without media.
+vec4 AirInMedia(vec3 direction, float distance_km, vec4 all) {
+#if HAS_MEDIA
+  MediaStretches stretches = MediaStretchesTo(direction, distance_km);
+  vec4 sum = stretches.weight[MEDIA_STRETCHES - 1] * all;
   vec4 light = vec4(0.0), before = vec4(0.0);
-  for (int i = 0; i < FOG_STRETCHES - 1; ++i) {
+  for (int i = 0; i < MEDIA_STRETCHES - 1; ++i) {
     AirTo air = AirToPoint(direction, stretches.distance_km[i]);
     before = light;
     light = air.single + air.diffuse;
     sum += stretches.weight[i] * light;
   }
-  return sum + FogRest(stretches, all, light, before);
+  return sum + MediaRest(stretches, all, light, before);
 #else
   return all;
 #endif
 }
 
-// Returns the light from a distance plus that of the air and fog on the path, without terrain
+// Returns the light from a distance plus that of the air and media on the path, without terrain
 // shadows.
-vec4 ThroughFog(vec3 direction, float distance_km, vec4 air, vec4 behind) {
-#if HAS_FOG
-  FogAlong fog = FogTo(direction, distance_km);
-  return AirInFog(direction, distance_km, air) + fog.radiance + fog.transmittance * behind;
+vec4 ThroughMedia(vec3 direction, float distance_km, vec4 air, vec4 behind) {
+#if HAS_MEDIA
+  MediaAlong media = MediaTo(direction, distance_km);
+  return AirInMedia(direction, distance_km, air) + media.radiance + media.transmittance * behind;
 #else
   return air + behind;
 #endif
@@ -59,8 +59,8 @@ vec4 ShadeOnTheWay(vec3 direction, float distance_km, float shaded_km, vec4 sing
 #if HAS_SHADE
   if (!CastsShadows()) return taken;
   taken = TakenByShade(shaded_km, single);
-#if HAS_FOG
-  taken += FogTakenByShade(shaded_km, FogSunTo(direction, distance_km));
+#if HAS_MEDIA
+  taken += MediaTakenByShade(shaded_km, MediaSunTo(direction, distance_km));
 #endif
 #endif
   return taken;
@@ -72,12 +72,12 @@ SeenGround LandOf(vec4 surface, vec3 place, vec3 direction) {
   return LandSeen(place, UnitFromOctahedral(surface.xy), -direction);
 }
 
-// Returns the radiance of ground lit by sun and sky through the fog above it.
+// Returns the radiance of ground lit by sun and sky through the media above it.
 // @param sky  irradiance on seen.normal.
 vec4 SunlitGround(SeenGround seen, float sun_x, vec4 sky, vec3 to_eye) {
-#if HAS_FOG
+#if HAS_MEDIA
   float altitude = seen.at.altitude;
-  sky = FogSkyLeft(altitude) * sky + FogOnSurface(altitude, dot(seen.normal, seen.at.up));
+  sky = SkyLeftByMedia(altitude) * sky + MediaOnSurface(altitude, dot(seen.normal, seen.at.up));
 #endif
   return SentOn(seen, sun_x, sky, to_eye);
 }
@@ -134,7 +134,7 @@ vec4 LandInLight(LandPixel land) {
 #endif
   float over_edge = CastsShadows() ? land.over_edge : kNoEdge;
   vec4 ground = air.transmittance * SunlitGround(land.seen, over_edge, sky, -land.direction);
-  vec4 radiance = ThroughFog(land.direction, distance_km, air.single + air.diffuse, ground) -
+  vec4 radiance = ThroughMedia(land.direction, distance_km, air.single + air.diffuse, ground) -
                   ShadeOnTheWay(land.direction, distance_km, distance_km, air.single);
   return sun_irradiance * radiance;
 }
@@ -154,7 +154,7 @@ void main() {
 #if HAS_NIGHT || HAS_LAMPS
   float distance_km = 1e-3 * surface.w;
   vec4 left =
-      TransmittanceTo(direction, distance_km) * FogTransmittance(direction, distance_km);
+      TransmittanceTo(direction, distance_km) * MediaTransmittance(direction, distance_km);
 #endif
 #if HAS_NIGHT
   bands += NightThrough(left, NightReflected(land.seen, -direction));
@@ -184,13 +184,13 @@ vec4 NightAbove(vec3 direction) {
 // the path in the direction `straight`.
 vec4 SkyInLight(vec3 direction, vec3 straight) {
   vec4 clear = SkyRadiance(straight);
-  vec4 radiance = ThroughFog(direction, kOutOfFog_km, clear, vec4(0.0));
-  return radiance - min(ShadeOnTheWay(direction, kOutOfFog_km, 1e9, clear), radiance);
+  vec4 radiance = ThroughMedia(direction, kOutOfMedia_km, clear, vec4(0.0));
+  return radiance - min(ShadeOnTheWay(direction, kOutOfMedia_km, 1e9, clear), radiance);
 }
 
 #if PASS == SKY_PASS
 // True if the sky table holds the planet's ground without changes.
-#define PLANET_IS_PLAIN (!HAS_FOG && GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_WATER)
+#define PLANET_IS_PLAIN (!HAS_MEDIA && GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_WATER)
 
 // A direction in which the bare planet may be seen, with all that does not depend on a light.
 struct PlanetPixel {
@@ -220,7 +220,7 @@ vec4 PlanetInLight(PlanetPixel planet) {
     AirTo air = AirToPoint(planet.direction, planet.distance_km);
     vec4 ground = air.transmittance * SunlitGround(planet.seen, kNoEdge, SkyOnPlanet(planet.seen),
                                                    -planet.direction);
-    radiance = ThroughFog(planet.direction, planet.distance_km, air.single + air.diffuse, ground);
+    radiance = ThroughMedia(planet.direction, planet.distance_km, air.single + air.diffuse, ground);
 #endif
   }
   return sun_irradiance * radiance;
@@ -228,9 +228,9 @@ vec4 PlanetInLight(PlanetPixel planet) {
 
 #if HAS_NIGHT
 vec4 NightOf(PlanetPixel planet) {
-  float distance_km = planet.is_seen ? planet.distance_km : kOutOfFog_km;
+  float distance_km = planet.is_seen ? planet.distance_km : kOutOfMedia_km;
   vec4 left =
-      TransmittanceToSpace(planet.straight) * FogTransmittance(planet.direction, distance_km);
+      TransmittanceToSpace(planet.straight) * MediaTransmittance(planet.direction, distance_km);
   vec4 behind = planet.is_seen ? NightReflected(planet.seen, -planet.direction)
                                : NightAbove(planet.direction);
   return NightThrough(left, behind);
@@ -240,7 +240,7 @@ vec4 NightOf(PlanetPixel planet) {
 #if HAS_LAMPS
 vec4 PlanetUnderLamps(PlanetPixel planet) {
   vec4 left = TransmittanceTo(planet.direction, planet.distance_km) *
-              FogTransmittance(planet.direction, planet.distance_km);
+              MediaTransmittance(planet.direction, planet.distance_km);
   return left * LampsReflected(planet.seen, planet.place, planet.direction);
 }
 #endif
@@ -281,7 +281,7 @@ void main() {
   bands += sun_irradiance * SkyInLight(direction, direction);
 #endif
 #if HAS_NIGHT
-  vec4 left = TransmittanceToSpace(direction) * FogTransmittance(direction, kOutOfFog_km);
+  vec4 left = TransmittanceToSpace(direction) * MediaTransmittance(direction, kOutOfMedia_km);
   bands += NightThrough(left, NightAbove(direction));
 #endif
   picture = vec4(LinearSrgb(bands), 0.0);
@@ -299,8 +299,8 @@ void main() {
   float width = RAY_ANGLE * dot(direction, view_forward.xyz);
   vec4 disks = RefractedDisks(direction, width) * TransmittanceToSpace(direction);
   vec4 radiance = SeesPlanet(direction) ? vec4(0.0) : disks;
-#if HAS_FOG
-  radiance *= FogTransmittance(direction, 1e3);
+#if HAS_MEDIA
+  radiance *= MediaTransmittance(direction, 1e3);
 #endif
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
 }

@@ -3,8 +3,8 @@
 // (renderer/visibility/shade_map.h).
 //
 // Requires vec4 SingleTo(vec3 direction, float distance_km): single scattering of sunlight up to a
-// distance in unshadowed air. Defined before this text: LEFT_BY_FOG(direction, distance_km), the
-// transmittance of fog up to a distance.
+// distance in unshadowed air. Defined before this text: LEFT_BY_MEDIA(direction, distance_km), the
+// transmittance of media up to a distance.
 
 uniform sampler2D shade_map;  // shadow height of the disk's middle, half height of its penumbra [m]
 // These rows map metres around the eye (east, north, up, 1) to the map's coordinates and height.
@@ -81,7 +81,7 @@ float ShadeDistance(vec2 stretch, float share, float left) {
 }
 
 // Returns the light [1/sr per unit irradiance] that shadows remove from the ray up to a distance,
-// attenuated by fog. Steps contribute about equal light; SingleTo gives the light of a piece of
+// attenuated by media. Steps contribute about equal light; SingleTo gives the light of a piece of
 // them.
 vec4 MarchedShade(vec3 direction, float distance_km) {
   ShadeRay ray = ShadeRayOf(direction);
@@ -94,7 +94,7 @@ vec4 MarchedShade(vec3 direction, float distance_km) {
   float left = dot(whole - middle, vec4(1.0)) / max(dot(middle - single, vec4(1.0)), 1e-20);
   left = clamp(left, 0.1, 0.99);
   vec4 shaded = vec4(0.0);
-  float clear = LEFT_BY_FOG(direction, 1e-3 * stretch.x);
+  float clear = LEFT_BY_MEDIA(direction, 1e-3 * stretch.x);
   vec2 over = OverShade(ray, stretch.x);
   for (int piece = 1; piece <= pieces; ++piece) {
     float dark = 0.0;
@@ -106,7 +106,7 @@ vec4 MarchedShade(vec3 direction, float distance_km) {
     }
     float end = ShadeDistance(stretch, float(piece) / float(shade_pieces), left);
     vec4 farther = piece < shade_pieces ? SingleTo(direction, 1e-3 * end) : whole;
-    float clear_there = LEFT_BY_FOG(direction, 1e-3 * end);
+    float clear_there = LEFT_BY_MEDIA(direction, 1e-3 * end);
     shaded += 0.5 * (clear + clear_there) * dark / float(shade_steps) * (farther - single);
     single = farther;
     clear = clear_there;

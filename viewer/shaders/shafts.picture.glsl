@@ -2,7 +2,7 @@
 // Light that shadows remove from the ray of a pixel, from the map of shafts.frag.glsl. Of the four
 // nearest rays in the map, those with about the same length are averaged.
 
-uniform sampler2D shaft_map, fog_shaft_map;
+uniform sampler2D shaft_map, media_shaft_map;
 uniform vec2 shaft_place;  // from pixels to the map: factor, offset
 
 // Returns the light that shadows remove up to a distance on this pixel's ray, from one of the maps.
@@ -31,7 +31,7 @@ vec4 TakenOf(vec4 light, sampler2D map, float distance_km) {
 // distance, or from SkyRadiance if the ray hits no terrain.
 vec4 TakenByShade(float distance_km, vec4 light) { return TakenOf(light, shaft_map, distance_km); }
 
-// Returns the light that terrain shadows remove from FogSunTo.
-vec4 FogTakenByShade(float distance_km, vec4 light) {
-  return TakenOf(light, fog_shaft_map, distance_km);
+// Returns the light that terrain shadows remove from MediaSunTo.
+vec4 MediaTakenByShade(float distance_km, vec4 light) {
+  return TakenOf(light, media_shaft_map, distance_km);
 }

@@ -25,7 +25,7 @@ bool IsHidden() {
 
 void main() {
   vec3 towards = star_towards.xyz;
-  light = LinearSrgb(star_light * TransmittanceToSpace(towards) * FogTransmittance(towards, 1e3));
+  light = LinearSrgb(star_light * TransmittanceToSpace(towards) * MediaTransmittance(towards, 1e3));
   across = star_across;
   up = star_up;
   last = star_last;

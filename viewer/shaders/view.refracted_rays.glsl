@@ -3,7 +3,7 @@
 // (atmosphere/refraction/refracted_view.h), with the parameters of the block View. Without
 // refraction, apparent and true positions are equal.
 //
-// Pixels, the air in front of them, fog and shafts use apparent directions and true distances, as
+// Pixels, the air in front of them, media and shafts use apparent directions and true distances, as
 // in the renderer. Ground is lit and coloured at its true position.
 
 float LiftAt(float altitude_km, float distance_km) {

@@ -126,9 +126,9 @@ struct FogDeviation {
 FogDeviation CompareFog(const BothFogs& both) {
   const auto rays = Rays(both, tests::ScaledDown(300, 120));
   const std::vector<float> gpu =
-      both.OnGpu("FogTo(vec3(a[0], a[1], a[2]), a[3]).radiance[1]", rays);
+      both.OnGpu("MediaTo(vec3(a[0], a[1], a[2]), a[3]).radiance[1]", rays);
   const std::vector<float> left =
-      both.OnGpu("FogTransmittance(vec3(a[0], a[1], a[2]), a[3])", rays);
+      both.OnGpu("MediaTransmittance(vec3(a[0], a[1], a[2]), a[3])", rays);
   std::vector<double> deviations;
   double largest = 0.0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -184,10 +184,10 @@ TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
       points.push_back({static_cast<float>(altitude / 1000.0), static_cast<float>(cos_up)});
     }
   }
-  const std::vector<float> sun =
-      both.OnGpu("FogSunLeft(a[0], " + std::to_string(both.map.view.light.seen.z) + ")", points);
-  const std::vector<float> sky = both.OnGpu("FogSkyLeft(a[0])", points);
-  const std::vector<float> added = both.OnGpu("FogOnSurface(a[0], a[1])[1]", points);
+  const std::vector<float> sun = both.OnGpu(
+      "SunLeftByMedia(a[0], " + std::to_string(both.map.view.light.seen.z) + ")", points);
+  const std::vector<float> sky = both.OnGpu("SkyLeftByMedia(a[0])", points);
+  const std::vector<float> added = both.OnGpu("MediaOnSurface(a[0], a[1])[1]", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double altitude = 1000.0 * double{points[i][0]};
     const SkyThroughMedia truth = both.renderer.SkyOnSurface(altitude, double{points[i][1]});
@@ -206,7 +206,7 @@ TEST(FogMap, ServesWhileTheEyeStandsAndNotWhenItHasRisen) {
 
 TEST_F(FogOnTheCard, ReachesADepthWhereItHasThatDepthForAnyEye) {
   const std::string ray = "vec3(a[0], a[1], a[2])";
-  const std::string whole = "FogDepthTo(" + ray + ", a[3])";
+  const std::string whole = "MediaDepthTo(" + ray + ", a[3])";
   for (const double eye_m : {10.0, 2e3, 2e4, 4e5, 3.6e7}) {
     const BothFogs both(FogOf(0.003, 100.0, 0.0), eye_m);
     const double radius = TheStage().scene.medium.planet_radius_m;
@@ -221,8 +221,8 @@ TEST_F(FogOnTheCard, ReachesADepthWhereItHasThatDepthForAnyEye) {
     for (const char* share : {"0.02", "0.5", "0.97"}) {
       const std::string depth = whole + " * " + share;
       const std::vector<float> found =
-          both.OnGpu("FogDepthTo(" + ray + ", FogDistanceOf(" + ray + ", " + depth + ", " + whole +
-                         ", a[3])) / (" + depth + ")",
+          both.OnGpu("MediaDepthTo(" + ray + ", MediaDistanceOf(" + ray + ", " + depth + ", " +
+                         whole + ", a[3])) / (" + depth + ")",
                      rays);
       for (std::size_t i = 0; i < rays.size(); ++i)
         EXPECT_NEAR(found[i], 1.0F, eye_m > 1e6 ? 0.2F : 0.01F)
@@ -234,10 +234,10 @@ TEST_F(FogOnTheCard, ReachesADepthWhereItHasThatDepthForAnyEye) {
 /// The shader's sum of a light that rises by 1 a kilometre of the ray (x, y, z) until its end, 20
 /// km at most.
 std::string LightInFog() {
-  const std::string to = "FogStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0))";
+  const std::string to = "MediaStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0))";
   const std::string km = to + ".distance_km";
-  return "dot(" + to + ".weight, " + km + ") + FogRest(" + to + ", vec4(" + km + ".w), vec4(" + km +
-         ".z), vec4(" + km + ".y)).x";
+  return "dot(" + to + ".weight, " + km + ") + MediaRest(" + to + ", vec4(" + km + ".w), vec4(" +
+         km + ".z), vec4(" + km + ".y)).x";
 }
 
 TEST_F(FogOnTheCard, StretchesDimALightThatRisesEvenlyAsTheFogDoes) {

@@ -29,7 +29,7 @@ constexpr double kCell_m = 60.0;
 /// Stands for the table of the air: what has come together after a distance, in two bands.
 constexpr std::array<double, 2> kReach_km = {12.0, 45.0};
 constexpr const char* kSingleTo =
-    "#define LEFT_BY_FOG(direction, km) 1.0\n"
+    "#define LEFT_BY_MEDIA(direction, km) 1.0\n"
     "vec4 SingleTo(vec3 direction, float distance_km) {\n"
     "  return vec4(1.0 - exp(-distance_km / vec2(12.0, 45.0)), 0.0, 0.0);\n}\n"
     "vec4 SkyRadiance(vec3 direction) { return SingleTo(direction, 1e9); }\n";

@@ -26,8 +26,8 @@
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/lamps/fog.h"
 #include "viewer/lamps/lamp_painter.h"
+#include "viewer/lamps/scene_media.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/passes/display_pass.h"
 #include "viewer/passes/picture_programs.h"
@@ -149,7 +149,7 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   std::vector<ShaderPiece> in_fog =
       WithViewerPieces(SharedTexts(), {"viewer/shaders/view.block.glsl"});
   in_fog.push_back(single);
-  for (ShaderPiece& piece : FogTexts(PhaseKind::kHenyeyGreenstein))
+  for (ShaderPiece& piece : MediaTexts({PhaseKind::kHenyeyGreenstein}))
     in_fog.push_back(std::move(piece));
   ExpectAccepted(ShaftPassTexts(std::move(in_fog), true), "shafts.frag.glsl");
   constexpr auto kSurface = LandDrawn::kSurface;
@@ -226,12 +226,12 @@ TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
     const SceneLamps lamps(scene, LoadGround(scene), scene.medium);
     const LampPainter painter(lamps, kMediumLamps, {});
     const GroundMaterial material(scene.ground, nullptr, scene.medium.wavelengths_nm);
-    const auto fog = with_fog ? std::optional(PhaseKind::kHenyeyGreensteinDraine) : std::nullopt;
+    const MediaKind media = with_fog ? MediaKind{PhaseKind::kHenyeyGreensteinDraine} : MediaKind{};
     for (const auto pass : {PictureStage::Pass::kLand, PictureStage::Pass::kSky,
                             PictureStage::Pass::kUnoccludedSky, PictureStage::Pass::kDisks}) {
       for (const PictureStage& of_lights : StagesOfLights()) {
         const PictureStage stage = of_lights.In(pass);
-        ExpectAccepted(PictureTexts({material, painter, {true, true}, fog}, stage),
+        ExpectAccepted(PictureTexts({material, painter, {true, true}, media}, stage),
                        "picture.frag.glsl");
       }
     }
@@ -269,7 +269,7 @@ struct SceneOfTextures {
       : scene(LampScene(is_heavy)),
         lamps(scene, LoadGround(scene), scene.medium),
         painter(lamps, kMediumLamps, {}),
-        fog(is_heavy ? std::optional(PhaseKind::kHenyeyGreensteinDraine) : std::nullopt),
+        media(is_heavy ? MediaKind{PhaseKind::kHenyeyGreensteinDraine} : MediaKind{}),
         material(CoverOf(is_heavy), nullptr, scene.medium.wavelengths_nm) {}
 
   [[nodiscard]] static GroundCover CoverOf(bool is_heavy) {
@@ -278,12 +278,12 @@ struct SceneOfTextures {
     return cover;
   }
 
-  [[nodiscard]] PictureKind Kind() const { return {material, painter, {true, true}, fog}; }
+  [[nodiscard]] PictureKind Kind() const { return {material, painter, {true, true}, media}; }
 
   Scene scene;
   SceneLamps lamps;
   LampPainter painter;
-  std::optional<PhaseKind> fog;
+  MediaKind media;
   GroundMaterial material;
 };
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/lamps/scene_media.h"
+
+namespace alpenglow::viewer {
+
+std::vector<ShaderPiece> MediaTexts(const MediaKind& kind) {
+  return kind.IsEmpty() ? NoFogTexts() : FogTexts(*kind.layer);
+}
+
+SceneMedia::SceneMedia(const LocalMedia& media, const LayerMapSize& size, const MediaUnits& units)
+    : media_(std::make_shared<const LocalMedia>(media.Only(false, true))) {
+  if (kind().IsEmpty()) return;
+  by_sun_.emplace(media_, size, units);
+  by_moon_.emplace(media_, size, units);
+}
+
+MediaKind SceneMedia::kind() const {
+  if (!media_->HasLayers()) return {};
+  return {media_->layer()->optics().phase.kind};
+}
+
+double SceneMedia::ExtinctionAt(double altitude_m) const {
+  return by_sun_ ? by_sun_->ExtinctionAt(altitude_m) : 0.0;
+}
+
+void SceneMedia::SetSize(const LayerMapSize& size) {
+  for (std::optional<SceneFog>* fog : {&by_sun_, &by_moon_})
+    if (*fog) (*fog)->SetSize(size);
+}
+
+void SceneMedia::Follow(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
+                        const DistantLight& light) {
+  std::optional<SceneFog>& fog = light.body == LightSource::kMoon ? by_moon_ : by_sun_;
+  if (fog) fog->Follow(air, eye, light);
+}
+
+void SceneMedia::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
+                                const DistantLight& light) {
+  std::optional<SceneFog>& fog = light.body == LightSource::kMoon ? by_moon_ : by_sun_;
+  if (fog) fog->WaitUntilReady(air, eye, light);
+}
+
+void SceneMedia::Connect(const ShaderProgram& program) const {
+  if (by_sun_) by_sun_->Connect(program);
+}
+
+const SceneFog& SceneMedia::Under(LightSource source) const {
+  return source == LightSource::kMoon ? *by_moon_ : *by_sun_;
+}
+
+void SceneMedia::Bind(const CameraPose& eye, const DistantLight& first,
+                      const DistantLight& second) const {
+  if (kind().IsEmpty()) return;
+  Under(first.body).Bind(eye, first, Under(second.body), second);
+}
+
+}  // namespace alpenglow::viewer
