@@ -144,8 +144,8 @@ class LampRay {
   }
 
   // Selects the layers that scatter at least a fiftieth as much as the densest one, at some height
-  // on the ray. They are used for scouting, which needs only the shape of the integrand. Above fog,
-  // the clear air is selected.
+  // on the ray. They are used for scouting, which needs only the shape of the integrand. Above
+  // dense layers, the clear air is selected.
   void ChooseLayers(double begin_z, double end_z) {
     constexpr int kPoints = 4;
     std::array<bool, kMostLampLayers> is_great{};

@@ -7,7 +7,7 @@
 //
 //   sigma(z) = sigma(0) exp(-z / H),          z = altitude_at_origin + up . p
 //
-// with H infinite for homogeneous fog. Over L kilometres the curved ground falls L^2 / 8R below the
+// with H infinite for a homogeneous layer. Over L kilometres the curved ground falls L^2 / 8R below the
 // flat ground that touches it in the middle: 2 m over 10 km. Columns along straight lines have a
 // closed form:
 //

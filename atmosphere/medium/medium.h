@@ -40,7 +40,7 @@ inline constexpr Range kCoefficient_per_m{0.0, 1e5};
 inline constexpr Range kPlanetRadius_m{1e3, 1e8};
 inline constexpr Range kAtmosphereTop_m{1.0, 1e7};
 /// In a layer of 100 m, sixteen nodes along a ray have an error of 0.2 % (rms) to 1 % of the single
-/// scattering, and more in thinner layers. Renderers treat fog as a separate medium.
+/// scattering, and more in thinner layers. Renderers treat such layers as separate media.
 inline constexpr Range kScaleHeight_m{100.0, 2e5};
 inline constexpr Range kDeficit{0.0, 1.0};
 inline constexpr Range kDepolarisation{0.0, kLargestDepolarisation};

@@ -48,8 +48,8 @@ struct AirChoice {
 /// vacuum.
 [[nodiscard]] double VisibilityOf(const Medium& medium);
 /// Returns Koschmieder's visibility at an altitude [m], from the extinction of molecules and
-/// aerosol there and of fog.
-/// @param more_per_m  extinction of fog [1/m].
+/// aerosol there and of other media.
+/// @param more_per_m  extinction of other media [1/m].
 [[nodiscard]] double VisibilityAt(const Medium& medium, double altitude_m, double more_per_m);
 /// Returns AirChoice::aerosol for a visibility [m]: 0 where molecules alone already reduce it
 /// further, 1000 at most.

@@ -16,7 +16,7 @@
 //
 //   R' / (R' + h) = cos(dip).
 //
-// RefractedBeam gives sunlight on ground, fog and volumes along refracted rays, relative to
+// RefractedBeam gives sunlight on ground and media along refracted rays, relative to
 // straight rays. If a disk is seen at an elevation e, a surface perpendicular to its beams receives
 //
 //   E = E_0 T(h, e) F(h, e),  F = exp(-more optical depth) (de / de_true) cos(e) / cos(e_true)

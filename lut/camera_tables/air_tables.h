@@ -150,7 +150,7 @@ struct MediumTables {
   AirTexels phase;
   /// On the map of table_maps.glsl, [zenith cosine, altitude]: the first half of the rows
   /// holds the transmittance of straight rays to space, by which air is illuminated. The second
-  /// half holds the transmitted fraction of the beam of a disk on ground and fog
+  /// half holds the transmitted fraction of the beam of a disk on ground and media
   /// (RefractedBeam::Left).
   AirTexels to_sun;
 };

@@ -59,7 +59,7 @@ class LampAirlightIrradiance {
   [[nodiscard]] glm::dvec3 ToLamp(double distance_m, double rise) const;
 
   /// Returns the irradiance of a surface [m^-2], in every band. Its error against quadrature over
-  /// the hemisphere, in fog of scale heights of 25 to 100 m up to 4 optical depths from the lamp,
+  /// the hemisphere, in layers of scale heights of 25 to 100 m up to 4 optical depths from the lamp,
   /// relative to the irradiance of the normal with the largest one, is below 18 %, rms 5 %.
   /// @param to_lamp  from the surface [m]; nearer than kNearest_m, the light is that there.
   /// @param normal, up  unit.

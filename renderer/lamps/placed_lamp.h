@@ -28,7 +28,7 @@ class LampStage {
   LampStage(const Scene& scene, const SceneGround& ground, const Medium& medium);
 
   [[nodiscard]] const SceneGround& ground() const { return *ground_; }
-  /// Layers of molecules, of aerosol, and those of the scene (fog).
+  /// Layers of molecules, of aerosol, and those of the scene.
   [[nodiscard]] const std::vector<LampLayer>& layers() const { return layers_; }
   [[nodiscard]] std::size_t bands() const { return bands_; }
   [[nodiscard]] double planet_radius_m() const { return planet_radius_m_; }

@@ -7,7 +7,7 @@
 // drawing.
 //
 // Altitudes are relative to the lowest of eye and lamps. Single precision is then sufficient for
-// fog with a scale height of metres under an eye kilometres above it. Densities are relative to
+// a layer with a scale height of metres under an eye kilometres above it. Densities are relative to
 // those at the base of each layer.
 #pragma once
 

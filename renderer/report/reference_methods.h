@@ -72,10 +72,10 @@ struct DiskPoint {
 /// Properties that a set of test cases shares.
 struct LampTestKind {
   double g = 0.8;                                                   // Henyey-Greenstein
-  double scale_height_m = std::numeric_limits<double>::infinity();  // of the fog
+  double scale_height_m = std::numeric_limits<double>::infinity();  // of the layer
   bool beam = false;                                                // a cone, not isotropic
   bool through = false;    // the ray passes through the lamp, a ball of 0.1 m
-  bool clear_air = false;  // adds molecules and aerosol to the fog
+  bool clear_air = false;  // adds molecules and aerosol to the layer
 };
 
 /// A lamp, a ray and the air around them.

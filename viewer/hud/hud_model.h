@@ -88,7 +88,7 @@ struct HudExposure {
 struct HudAir {
   std::string planet;                // name of the medium
   double visibility_km = 50.0;       // of the air at altitude 0
-  double visibility_here_km = 50.0;  // at the camera, also in fog
+  double visibility_here_km = 50.0;  // at the camera, also in media
   double aerosol_scale = 1.0;        // factor on the aerosol of the planet
   double ozone_du = 300.0;           // 0 for air without ozone
   double ground_albedo = 0.1;
