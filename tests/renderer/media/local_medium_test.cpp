@@ -10,7 +10,7 @@
 
 #include "renderer/media/media_light.h"
 #include "tests/fixtures/bare_scene.h"
-#include "tests/fixtures/lit_air.h"
+#include "tests/fixtures/solved_media.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -85,19 +85,18 @@ class GlowingSheet final : public LocalMedium {
 struct NightStage {
   Scene scene = [] {
     Scene bare = QuickScene(50.0, 0.0, 0.0, 60.0);
-    bare.medium = tests::ThreeBandAir().medium;
+    bare.medium = tests::ThreeBandAir().medium();
     return bare;
   }();
   SceneGround ground = LoadGround(scene);
   SceneGeometry geometry{ground, scene.medium, false};
-  const tests::LitAir& lit_air = tests::ThreeBandAir();
-  SunlitAir air{lit_air.air, lit_air.beam, lit_air.multiple_scattering};
+  const SolvedAir& air = tests::ThreeBandAir();
   Lighting light = [this] {
     SunPosition sun;
     sun.distance_au = 1.0;
     Lighting at = LightingOf(sun, UtcInstant{}, {.latitude_rad = 0.8}, scene.medium);
-    at.to_sun = at.to_sun_for_air = {0.0, 0.6, -0.8};
-    at.sun_radius_rad = 0.00465;
+    at.source.direction = Unrefracted({0.0, 0.6, -0.8});
+    at.source.radius_rad = 0.00465;
     return at;
   }();
 
@@ -114,7 +113,7 @@ TEST(LocalMedium, AnyKindIsMarchedThroughItsInterface) {
   const MarchedLight light = stage.Lit({sheet}).Along(kOrigin, {0.0, 1.0, 0.0}, 1e3, nullptr);
   ViewRay to{50.0, 0.0, 0.0, 0.0};
   to.length_m = 100.5;
-  const BandLight air = stage.lit_air.air.TransmittanceAlong(to);
+  const BandLight air = stage.air.single_scattering().TransmittanceAlong(to);
   for (std::size_t band = 0; band < 3; ++band) {
     EXPECT_NEAR(static_cast<double>(light.radiance[band] / air[band]), 6.0 * -std::expm1(-0.5),
                 1e-3)
