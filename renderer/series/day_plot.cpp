@@ -13,6 +13,7 @@
 #include "atmosphere/astronomy/time_text.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
 #include "lut/image/svg_elements.h"
 
 namespace alpenglow::renderer {

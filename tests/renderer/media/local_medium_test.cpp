@@ -157,7 +157,7 @@ TEST(LocalMedium, BodiesAndLayersMayStandInAnyOrder) {
 
 TEST(LocalMedium, TwoThinLayersScatterAsOne) {
   NightStage stage;
-  stage.light.to_sun = stage.light.to_sun_for_air = {0.0, 0.6, 0.8};
+  stage.light.source.direction = Unrefracted({0.0, 0.6, 0.8});
   const auto layer_of = [&](double per_m) {
     MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), {}};
     for (std::size_t band = 0; band < 3; ++band)
