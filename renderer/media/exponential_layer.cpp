@@ -79,7 +79,7 @@ double PerigeeOf(const PointOnRay& at, double planet_radius_m) {
 
 double ExponentialLayer::ColumnToSpace(const glm::dvec3& point, const glm::dvec3& direction) const {
   const PointOnRay at = PointOn(*this, point, direction, shape_.planet_radius_m);
-  // Of a homogeneous layer, the distance to the top holds below the horizontal, too.
+  // In a homogeneous layer, the distance to the top holds below the horizontal, too.
   if (at.mu >= 0.0 || std::isinf(shape_.scale_height_m)) return ColumnUp(at.altitude_m, at.mu);
   const double perigee = PerigeeOf(at, shape_.planet_radius_m);
   return std::max(2.0 * ColumnUp(perigee, 0.0) - ColumnUp(at.altitude_m, -at.mu), 0.0);

@@ -15,10 +15,10 @@
 
 namespace alpenglow::renderer {
 
-/// Whether media send the light that they emit themselves.
+/// This switch turns the light that media emit themselves on or off.
 enum class MediaEmission { kOn, kOff };
 
-/// What lights the media of a scene, for one position of the sun. Refers to its parts.
+/// The sources of light in the media of a scene, for one position of the sun. It refers to its parts.
 struct MediaSources {
   const LocalMedia& media;
   const SceneGeometry& geometry;

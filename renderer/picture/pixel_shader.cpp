@@ -505,7 +505,8 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   const FrameContext& frame = *frame_;
   const NightLight* night = frame.sky_lights().night.get();
   Shaded shaded;
-  shaded.inscatter = through.layers_left * (frame_->light().source.irradiance * through.air.inscatter);
+  shaded.inscatter =
+      through.layers_left * (frame_->light().source.irradiance * through.air.inscatter);
   shaded.transmittance = through.layers_left * through.air.transmittance;
   const bool has_air = frame.Has(hit.kind == HitKind::kSky ? Effect::kSky : Effect::kAerial);
   if (night && has_air) {
