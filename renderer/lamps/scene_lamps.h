@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Provides SceneLamps, the lamps of a scene and the landing light of the eye's own aircraft for a
 // moving eye. It selects the lamps, or the nodes that represent many lamps
-// (renderer/lamps/lamp_tree.h), for the loop of a shader, and packs them for lamp_light.glsl into a
-// uniform block of vec4 alone. It also provides phase functions as shader expressions, and
+// (renderer/lamps/lamp_tree.h), for the loop of a shader, and packs them for lamps/light.glsl into
+// a uniform block of vec4 alone. It also provides phase functions as shader expressions, and
 // LampShadowFieldFollower, which computes the LitPlans of all lamps once, one by one, beside
 // drawing.
 //
@@ -41,12 +41,12 @@ namespace alpenglow::renderer {
 /// supports, and are few enough for a loop in a shader.
 inline constexpr std::size_t kMostGpuLamps = 64;
 
-/// Mirrors `struct Lamp` of lamp_light.glsl.
+/// Mirrors `struct Lamp` of lamps/light.glsl.
 struct GpuLamp {
   glm::vec4 position, intensity, axis, side, profile, up, at_eye, at_lamp, glow, shade;
 };
 
-/// Mirrors the uniform block `Lamps` of lamp_light.glsl.
+/// Mirrors the uniform block `Lamps` of lamps/light.glsl.
 struct LampsBlock {
   glm::vec4 count, planet, falls, bases, molecules, aerosol, dimming, layer, mie_phase, layer_phase;
   glm::vec4 red, green, blue;

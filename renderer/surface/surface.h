@@ -32,7 +32,7 @@ struct GroundPoint {
   double sea_s = 0.0;         // time of the waves
 };
 
-/// Families of noise of ground_cover.glsl, in the order of ground.glsl.
+/// Families of noise of ground_cover.glsl, in the order of ground/pattern.glsl.
 enum class GroundNoise { kBroad, kFine, kRelief, kGrain, kWaves };
 inline constexpr std::size_t kGroundNoises = 5;
 

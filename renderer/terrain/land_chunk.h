@@ -75,7 +75,7 @@ struct LightOfVertices {
   std::optional<Vector<Ecef>> to_disk = std::nullopt;
 };
 
-/// Geometry of a vertex, in the layout of land.vert.glsl.
+/// Geometry of a vertex, in the layout of land/land.vert.glsl.
 struct ChunkVertex {
   std::array<float, 3> position_m, coarse_position_m;  // in the anchor's frame
   std::array<float, 2> sample;                         // column and row relative to the anchor's
@@ -84,7 +84,7 @@ struct ChunkVertex {
 };
 static_assert(sizeof(ChunkVertex) == 48);
 
-/// Light of a vertex as half floats, in the layout of land.vert.glsl.
+/// Light of a vertex as half floats, in the layout of land/land.vert.glsl.
 struct ChunkLight {
   std::array<std::uint16_t, 4> sky, coarse_sky, moon_sky, coarse_moon_sky;
   std::array<std::uint16_t, 2> disk_x;  // own, coarser

@@ -22,7 +22,7 @@
 
 namespace alpenglow::renderer {
 
-/// View of the land, as in view.block.glsl: axes in the eye's frame (east, north, up).
+/// View of the land, as in view/block.glsl: axes in the eye's frame (east, north, up).
 struct LandView {
   glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the horizontal field of view
   glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half the vertical one

@@ -151,7 +151,7 @@ std::vector<double> Reference(const View& view, const glm::dvec3& to_sun) {
 }
 
 std::vector<ShaderPiece> AirTexts() {
-  return {ViewerPiece("viewer/shaders/view.block.glsl"),
+  return {ViewerPiece("viewer/shaders/view/block.glsl"),
           {"air",
            "vec4 SingleTo(vec3 direction, float distance_km) {\n"
            "  return 1.0 - exp(-distance_km / vec4(25.0, 12.0, 45.0, 80.0));\n}\n"

@@ -62,8 +62,8 @@ glm::vec4 AxesOf(int one, int other) {
 }  // namespace
 
 std::vector<ShaderPiece> AirTableTexts() {
-  return WithViewerPieces({}, {"viewer/shaders/view.lights.glsl", "lut/camera_tables/air_map.glsl",
-                               "viewer/shaders/air.tables.glsl"});
+  return WithViewerPieces({}, {"viewer/shaders/view/lights.glsl", "lut/camera_tables/air_map.glsl",
+                               "viewer/shaders/air/tables.glsl"});
 }
 
 AirTextures::AirTextures() = default;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Provides AirTextures, the tables of air_tables.h on the GPU for air.tables.glsl, and AirFollower,
+// Provides AirTextures, the tables of air_tables.h on the GPU for air/tables.glsl, and AirFollower,
 // which updates them for a moving eye and a moving sun.
 //
 // AirFollower computes tables on a thread beside drawing. It requests new tables when the error of
@@ -25,7 +25,7 @@
 
 namespace alpenglow::viewer {
 
-/// Mirrors the uniform block `AirTables` of air.tables.glsl.
+/// Mirrors the uniform block `AirTables` of air/tables.glsl.
 struct AirTablesBlock {
   glm::vec4 sun, sun_seen, frame, shell, ranges, crowding, columns;
   glm::vec4 sky_rows, through_rows, way_rows, extinction_rows, distances, phase_nodes;
@@ -35,7 +35,7 @@ struct AirTablesBlock {
 };
 static_assert(sizeof(AirTablesBlock) == 19 * sizeof(glm::vec4));
 
-/// Returns the pieces of a shader that calls the functions of air.tables.glsl; they follow
+/// Returns the pieces of a shader that calls the functions of air/tables.glsl; they follow
 /// SharedTexts().
 [[nodiscard]] std::vector<ShaderPiece> AirTableTexts();
 

@@ -183,12 +183,12 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandK
                        material.HasWater() ? GlossMirror::kLayers : 0,
                        SkyIrradianceGradient::kColumns, SkyIrradianceGradient::kRows)},
           ViewerPiece("renderer/illumination/sky_irradiance_gradient.glsl"),
-          ViewerPiece("viewer/shaders/view.lights.glsl"),
-          ViewerPiece("viewer/shaders/ground.glsl"),
+          ViewerPiece("viewer/shaders/view/lights.glsl"),
+          ViewerPiece("viewer/shaders/ground/pattern.glsl"),
           SkyByPixelSizes(),
-          ViewerPiece("viewer/shaders/sky_by_pixel.tables.glsl"),
-          ViewerPiece("viewer/shaders/ground_surface.glsl"),
-          ViewerPiece("viewer/shaders/ground_light.glsl")};
+          ViewerPiece("viewer/shaders/sky_by_pixel/tables.glsl"),
+          ViewerPiece("viewer/shaders/ground/surface.glsl"),
+          ViewerPiece("viewer/shaders/ground/light.glsl")};
 }
 
 GroundTextures::GroundTextures(const MultipleScattering& multiple_scattering) {
@@ -406,7 +406,7 @@ void SkyByPixel::BindOther(int first_unit, LightSource source) const {
 }
 
 std::vector<ShaderPiece> SkyByPixelTexts() {
-  return {ViewerPiece("viewer/shaders/sky_by_pixel.irradiance.glsl")};
+  return {ViewerPiece("viewer/shaders/sky_by_pixel/irradiance.glsl")};
 }
 
 }  // namespace alpenglow::viewer

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Provides the C++ side of ground_light.glsl and ground_surface.glsl: uniform blocks with identical
+// Provides the C++ side of ground/light.glsl and ground/surface.glsl: uniform blocks with identical
 // byte layout (as in pass_setup.h), textures, and the shader texts for the material of the
 // ground. It also provides the ColourDrape of a scene, a picture of colours or land cover over its
 // terrain, resampled to a texture over a rectangle of the frame's plane.
 //
 // Provides SkyByPixel, the renderer's tables for the light on slopes between mountains
-// (OccludedSkyIrradiance, HorizonMap, TerrainInterreflection) on the GPU. shaders/sky_by_pixel.tables.glsl
-// evaluates them for every pixel. Light that is interpolated between vertices has errors of up to
-// 10 % at dusk, where a horizon hides the glow (tests/bench/README.md).
+// (OccludedSkyIrradiance, HorizonMap, TerrainInterreflection) on the GPU.
+// shaders/sky_by_pixel/tables.glsl evaluates them for every pixel. Light that is interpolated
+// between vertices has errors of up to 10 % at dusk, where a horizon hides the glow
+// (tests/bench/README.md).
 //
 // A pixel reads 56 texels of half floats per source for its irradiance, so only the high quality
 // uses these tables for it. Water and glossy land look up what they mirror at every quality.
@@ -65,7 +66,7 @@ struct SceneDrape {
 /// colours.
 [[nodiscard]] DrapeTexels TexelsOf(const SceneDrape& drape);
 
-/// Mirrors the uniform block `GroundLight` of ground_light.glsl.
+/// Mirrors the uniform block `GroundLight` of ground/light.glsl.
 struct GroundLightBlock {
   glm::vec4 sky_towards;
   glm::vec4 ground_view;
@@ -80,7 +81,7 @@ static_assert(offsetof(GroundLightBlock, ground_view) == sizeof(glm::vec4));
                                                   const glm::dvec3& to_light,
                                                   double pixel_angle_rad);
 
-/// Mirrors the uniform block `GroundSurface` of ground_surface.glsl.
+/// Mirrors the uniform block `GroundSurface` of ground/surface.glsl.
 struct GroundSurfaceBlock {
   glm::vec4 cover_albedo, rough, coat, water, under_water, snow_y;
   glm::vec4 drape_red, drape_green, drape_blue, drape_place, drape_eye, drape_east, drape_north;
@@ -137,7 +138,7 @@ class GroundTextures {
   std::array<GlTexture, kLightSources> gloss_mirrors_;
 };
 
-/// Mirrors the uniform block `SkyByPixel` of sky_by_pixel.tables.glsl.
+/// Mirrors the uniform block `SkyByPixel` of sky_by_pixel/tables.glsl.
 struct SkyByPixelBlock {
   glm::vec4 horizon_u, horizon_v, slope_u, slope_v, sky_moment, sky_place, slope_unit;
   glm::vec4 other_sky_moment, other_sky_place, other_slope_unit;

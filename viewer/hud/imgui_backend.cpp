@@ -228,8 +228,8 @@ void FeedInput(ImGuiIO& io, const InputFrame& input, const PanelKeys& keys) {
 }
 
 DrawListPainter::DrawListPainter()
-    : program_({ViewerPiece("viewer/shaders/hud.vert.glsl")},
-               {ViewerPiece("viewer/shaders/hud.frag.glsl")},
+    : program_({ViewerPiece("viewer/shaders/hud/hud.vert.glsl")},
+               {ViewerPiece("viewer/shaders/hud/hud.frag.glsl")},
                {{kPlace, "place"}, {kAtlasPlace, "atlas_place"}, {kColour, "colour"}}) {
   program_.BindSampler("atlas", kAtlasUnit);
   glBindVertexArray(layout_.id());

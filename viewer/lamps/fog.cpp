@@ -40,11 +40,11 @@ FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
 
 std::vector<ShaderPiece> FogTexts(PhaseKind kind) {
   return {{"fog constants", fmt::format("#define FOG_PHASE(c, p) {}\n", FormOf(kind).expression)},
-          ViewerPiece("viewer/shaders/view.lights.glsl"),
-          ViewerPiece("viewer/shaders/fog.light.glsl")};
+          ViewerPiece("viewer/shaders/view/lights.glsl"),
+          ViewerPiece("viewer/shaders/fog/light.glsl")};
 }
 
-std::vector<ShaderPiece> NoFogTexts() { return {ViewerPiece("viewer/shaders/fog.none.glsl")}; }
+std::vector<ShaderPiece> NoFogTexts() { return {ViewerPiece("viewer/shaders/fog/none.glsl")}; }
 
 void FogPainter::Connect(const ShaderProgram& program) const {
   program.Use();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Provides the light of sun and sky in a scene's fog on the GPU: FogPainter, which uploads a FogMap
-// (renderer/media/fog_map.h) for fog.light.glsl, and SceneFog, which computes maps for a moving
+// (renderer/media/fog_map.h) for fog/light.glsl, and SceneFog, which computes maps for a moving
 // eye and sun beside drawing.
 #pragma once
 
@@ -22,14 +22,14 @@
 
 namespace alpenglow::viewer {
 
-/// Mirrors the uniform block `Fog` of fog.light.glsl.
+/// Mirrors the uniform block `Fog` of fog/light.glsl.
 struct FogBlock {
   glm::vec4 layer, eye, sun, phase, map_size, other_sun;
 };
 static_assert(sizeof(FogBlock) == 6 * sizeof(glm::vec4));
 
 /// Returns texts for a fragment stage, which follow SharedTexts(): MediaTo(direction, distance_km)
-/// and the rest of fog.light.glsl. @param kind  kind of the fog's phase function.
+/// and the rest of fog/light.glsl. @param kind  kind of the fog's phase function.
 [[nodiscard]] std::vector<ShaderPiece> FogTexts(PhaseKind kind);
 
 /// Returns texts with these functions for scenes without fog.

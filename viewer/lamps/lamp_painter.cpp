@@ -70,10 +70,10 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
 
 std::vector<ShaderPiece> LampTexts(const SceneLamps& shape, const LampQuality& quality) {
   return WithViewerPieces({{"lamp constants", DefinesOf(shape, quality)}},
-                          {"viewer/shaders/lamp_light.glsl", "viewer/shaders/lamps.picture.glsl"});
+                          {"viewer/shaders/lamps/light.glsl", "viewer/shaders/lamps/picture.glsl"});
 }
 
-std::vector<ShaderPiece> NoLampTexts() { return {ViewerPiece("viewer/shaders/lamps.none.glsl")}; }
+std::vector<ShaderPiece> NoLampTexts() { return {ViewerPiece("viewer/shaders/lamps/none.glsl")}; }
 
 LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
                          const LampUnits& units)
@@ -81,23 +81,23 @@ LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
   ALPENGLOW_ENSURE(quality.nodes, >=, 2);
   ALPENGLOW_ENSURE(quality.nodes, <=, 32);
   std::vector<ShaderPiece> texts =
-      WithViewerPieces(SharedTexts(), {"viewer/shaders/view.block.glsl"});
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/view/block.glsl"});
   std::vector<ShaderPiece> corners = texts;
   texts.insert(texts.end(), texts_.begin(), texts_.end());
   // The last text is for pixels only, so it is omitted here.
   corners.insert(corners.end(), texts_.begin(), texts_.end() - 1);
-  corners.push_back(ViewerPiece("viewer/shaders/lamps.corners.glsl"));
+  corners.push_back(ViewerPiece("viewer/shaders/lamps/corners.glsl"));
   if (quality.step > 1) {
     glow_program_.emplace(
-        FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/lamps.airlight.frag.glsl"})));
-    core_program_.emplace(WithViewerPieces(corners, {"viewer/shaders/lamps.core.vert.glsl"}),
-                          WithViewerPieces(texts, {"viewer/shaders/lamps.core.frag.glsl"}));
+        FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/lamps/airlight.frag.glsl"})));
+    core_program_.emplace(WithViewerPieces(corners, {"viewer/shaders/lamps/core.vert.glsl"}),
+                          WithViewerPieces(texts, {"viewer/shaders/lamps/core.frag.glsl"}));
     Connect(*glow_program_);
     Connect(*core_program_);
   }
   disk_program_.emplace(
-      WithViewerPieces(corners, {"viewer/shaders/lamps.disk.vert.glsl"}),
-      WithViewerPieces(texts, {"viewer/shaders/lamps.disk.frag.glsl"}),
+      WithViewerPieces(corners, {"viewer/shaders/lamps/disk.vert.glsl"}),
+      WithViewerPieces(texts, {"viewer/shaders/lamps/disk.frag.glsl"}),
       std::vector<VertexAttribute>{{0, "disk_towards"}, {1, "disk_light"}, {2, "disk_place"}});
   Connect(*disk_program_);
   UploadTables(shape);

@@ -37,7 +37,7 @@ inline constexpr LampQuality kLowLamps{4, 4};
 inline constexpr LampQuality kMediumLamps{5, 6};
 inline constexpr LampQuality kHighLamps{12, 1};
 
-/// Returns texts for a fragment stage, which follow SharedTexts() and view.block.glsl:
+/// Returns texts for a fragment stage, which follow SharedTexts() and view/block.glsl:
 /// LampsOnGround(point_m, normal, ray_width_m), LampAirlightRgb(direction, end_m),
 /// LampRayEnd(direction, surface_m).
 /// @param shape  lamps that determine the features of the shaders: tables, a layer, phase functions.
@@ -50,7 +50,7 @@ inline constexpr LampQuality kHighLamps{12, 1};
 /// Binding points of the lamps' data.
 struct LampUnits {
   GLuint lamps_block = 8;
-  GLuint view_block = 1;  // block "View" of view.block.glsl
+  GLuint view_block = 1;  // block "View" of view/block.glsl
   int surface = 0;        // texture unit of the surface map
   int first = 8;          // first of six texture units
 };

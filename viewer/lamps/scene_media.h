@@ -29,7 +29,7 @@ struct MediaKind {
 };
 
 /// Returns texts for a fragment stage, which follow SharedTexts(): MediaTo(direction, distance_km)
-/// and the rest of fog.light.glsl.
+/// and the rest of fog/light.glsl.
 [[nodiscard]] std::vector<ShaderPiece> MediaTexts(const MediaKind& kind);
 
 class SceneMedia {

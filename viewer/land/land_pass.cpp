@@ -80,11 +80,11 @@ ShaderProgram LandProgram(const LandProgramKind& kind) {
   for (const char* const name : LandPass::kAttributes)
     attributes.push_back({static_cast<GLuint>(attributes.size()), name});
   const char* const fragment = kind.drawn == LandDrawn::kSurface
-                                   ? "viewer/shaders/land.frag.glsl"
-                                   : "viewer/shaders/land.depth_prepass.frag.glsl";
-  return ShaderProgram(WithViewerPieces(LandVertexTexts(kind), {"viewer/shaders/land.vert.glsl"}),
-                       WithViewerPieces(LandFragmentTexts(kind, LandPass::DepthText()), {fragment}),
-                       attributes);
+                                   ? "viewer/shaders/land/land.frag.glsl"
+                                   : "viewer/shaders/land/depth_prepass.frag.glsl";
+  return ShaderProgram(
+      WithViewerPieces(LandVertexTexts(kind), {"viewer/shaders/land/land.vert.glsl"}),
+      WithViewerPieces(LandFragmentTexts(kind, LandPass::DepthText()), {fragment}), attributes);
 }
 
 glm::vec4 Padded(const glm::dvec3& v) { return {glm::vec3(v), 0.0F}; }
@@ -142,23 +142,23 @@ bool LandPass::MakeOneReady() {
 std::vector<ShaderPiece> LandVertexTexts(const LandProgramKind& kind) {
   std::vector<ShaderPiece> texts = SharedTexts();
   texts.push_back(DefinesOf(kind));
-  return WithViewerPieces(std::move(texts), {"viewer/shaders/view.block.glsl",
-                                             "viewer/shaders/view.refracted_rays.glsl",
-                                             "viewer/shaders/land.block.glsl"});
+  return WithViewerPieces(std::move(texts), {"viewer/shaders/view/block.glsl",
+                                             "viewer/shaders/view/refracted_rays.glsl",
+                                             "viewer/shaders/land/block.glsl"});
 }
 
 std::vector<ShaderPiece> LandFragmentTexts(const LandProgramKind& kind, const ShaderPiece& depth) {
   std::vector<ShaderPiece> texts = WithViewerPieces(
       {DefinesOf(kind)},
-      {"viewer/shaders/view.block.glsl", "viewer/shaders/land.block.glsl",
-       "viewer/shaders/gbuffer.octahedral.glsl", "viewer/shaders/gbuffer.inverse_depth.glsl"});
+      {"viewer/shaders/view/block.glsl", "viewer/shaders/land/block.glsl",
+       "viewer/shaders/gbuffer/octahedral.glsl", "viewer/shaders/gbuffer/inverse_depth.glsl"});
   texts.push_back(depth);
-  return WithViewerPieces(std::move(texts), {"viewer/shaders/land.seen.glsl"});
+  return WithViewerPieces(std::move(texts), {"viewer/shaders/land/seen.glsl"});
 }
 
 ShaderPiece LandPass::DepthText() {
-  return ViewerPiece(CanReverseDepth() ? "viewer/shaders/gbuffer.reversed_depth.glsl"
-                                       : "viewer/shaders/gbuffer.logarithmic_depth.glsl");
+  return ViewerPiece(CanReverseDepth() ? "viewer/shaders/gbuffer/reversed_depth.glsl"
+                                       : "viewer/shaders/gbuffer/logarithmic_depth.glsl");
 }
 
 void LandPass::Clear(LandDrawn drawn) {

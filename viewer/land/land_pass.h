@@ -69,7 +69,7 @@ class HorizonTexture {
 class GBuffer : public RenderTarget {
  public:
   enum Output : std::size_t {
-    /// Four floats: normal in the eye's frame, octahedral (gbuffer.octahedral.glsl); elevation of
+    /// Four floats: normal in the eye's frame, octahedral (gbuffer/octahedral.glsl); elevation of
     /// the shadow-casting disk above the terrain's edge, in radii of the disk; distance [m], 0: no
     /// terrain.
     kSurface,
@@ -93,7 +93,7 @@ class DepthPrepass : public RenderTarget {
   DepthPrepass(int width, int height) : RenderTarget(width, height, {}, Depth::k32Bit) {}
 };
 
-/// Mirrors the uniform block `Land` of land.block.glsl.
+/// Mirrors the uniform block `Land` of land/block.glsl.
 struct LandBlock {
   static constexpr std::size_t kMostLevels = 32;
   glm::vec4 eye_high, eye_low;
@@ -137,7 +137,7 @@ struct LandProgramKind {
 
   auto operator<=>(const LandProgramKind&) const = default;
 };
-/// Returns the texts of a program before land.vert.glsl and before its fragment stage.
+/// Returns the texts of a program before land/land.vert.glsl and before its fragment stage.
 [[nodiscard]] std::vector<ShaderPiece> LandVertexTexts(const LandProgramKind& kind);
 [[nodiscard]] std::vector<ShaderPiece> LandFragmentTexts(const LandProgramKind& kind,
                                                          const ShaderPiece& depth);
@@ -148,7 +148,7 @@ class LandPass {
 
   /// Location of the first attribute of the light that fades out, and of the one that fades in.
   static constexpr unsigned kOldLight = 5, kNewLight = 10;
-  /// Attributes of land.vert.glsl, in the order of their locations.
+  /// Attributes of land/land.vert.glsl, in the order of their locations.
   static constexpr std::array<const char*, 15> kAttributes{
       "position",          "coarse_position",
       "sample_place",      "normal",

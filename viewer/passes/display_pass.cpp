@@ -129,7 +129,7 @@ std::string MacroOf(ToneCurve curve) {
 
 ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
   ShaderProgram program = FullScreenProgram(WithViewerPieces(
-      ToneMapPassTexts(curve, dithers), {"viewer/shaders/display.tone_map.frag.glsl"}));
+      ToneMapPassTexts(curve, dithers), {"viewer/shaders/display/tone_map.frag.glsl"}));
   program.BindSampler("linear_picture", kPicture);
   program.BindSampler("tone_table", kTable);
   glUniform2f(program.Uniform("stops"), static_cast<float>(ToneTable::kLowestStop),
@@ -149,7 +149,7 @@ enum UpscalerUnit { kSmall, kPrintDither, kOutline };
 
 ShaderProgram ProgramOf(Upscaler::Shows shows) {
   ShaderProgram program = FullScreenProgram(WithViewerPieces(
-      UpscalerTexts(shows, LandPass::DepthText()), {"viewer/shaders/display.upscale.frag.glsl"}));
+      UpscalerTexts(shows, LandPass::DepthText()), {"viewer/shaders/display/upscale.frag.glsl"}));
   program.BindSampler("small_picture", kSmall);
   program.BindSampler("outline", kOutline);
   return program;
@@ -186,7 +186,7 @@ std::vector<ShaderPiece> ToneMapPassTexts(ToneCurve curve, bool dithers) {
   std::vector<ShaderPiece> texts = SharedTexts();
   texts.push_back(
       {"curve", fmt::format("#define {}\n#define DITHERS {}\n", MacroOf(curve), dithers ? 1 : 0)});
-  return WithViewerPieces(std::move(texts), {"viewer/shaders/display.dither.glsl"});
+  return WithViewerPieces(std::move(texts), {"viewer/shaders/display/dither.glsl"});
 }
 
 ToneMapPass::ToneMapPass(const Look& look, FirstPictures first)
@@ -259,10 +259,10 @@ void ToneMapPass::DevelopSmall(const RenderTarget& picture, double ev100,
 std::vector<ShaderPiece> UpscalerTexts(Upscaler::Shows shows, const ShaderPiece& depth) {
   const bool dithers = shows == Upscaler::Shows::kCodes;
   std::vector<ShaderPiece> texts =
-      WithViewerPieces(SharedTexts(), {"viewer/shaders/gbuffer.inverse_depth.glsl"});
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/gbuffer/inverse_depth.glsl"});
   texts.push_back(depth);
   texts.push_back({"shown", dithers ? "#define DITHERS 1\n" : "#define DITHERS 0\n"});
-  return dithers ? WithViewerPieces(std::move(texts), {"viewer/shaders/display.dither.glsl"})
+  return dithers ? WithViewerPieces(std::move(texts), {"viewer/shaders/display/dither.glsl"})
                  : texts;
 }
 

@@ -4,7 +4,7 @@
 //
 // ExposureMeter reads back small copies of pictures without waiting for them. SpotMeter reads the
 // luminance under the pointer. DitherTexture holds the tile of dither noise for
-// shaders/display.dither.glsl.
+// shaders/display/dither.glsl.
 //
 // ToneTable tabulates AgX in one of its looks as a 3D texture. One fetch replaces nine powers and
 // logarithms per pixel and the hue correction. It holds sRGB codes as a function of the exposed
@@ -15,7 +15,8 @@
 // ToneMapPass applies all steps to a linear picture, and DisplayPass shows it on a screen. If the
 // picture is smaller than the screen, it is tone-mapped at its own resolution and then upscaled by
 // Upscaler, which interpolates smooth areas and uses the edges of land at screen resolution
-// (shaders/display.upscale.frag.glsl). The cost of lighting is that of the small picture, and edges stay sharp.
+// (shaders/display/upscale.frag.glsl). The cost of lighting is that of the small picture, and edges
+// stay sharp.
 #pragma once
 
 #include <array>
@@ -169,7 +170,7 @@ class ToneMapPass {
   DitherTexture dither_;
 };
 
-/// Returns the shader texts before display.tone_map.frag.glsl. They define the macro of the curve.
+/// Returns the shader texts before display/tone_map.frag.glsl. They define the macro of the curve.
 [[nodiscard]] std::vector<ShaderPiece> ToneMapPassTexts(ToneCurve curve, bool dithers);
 
 class Upscaler {
@@ -181,8 +182,8 @@ class Upscaler {
   explicit Upscaler(Shows shows);
 
   /// Fills the framebuffer (0: the window), which has the size of the outline.
-  /// @param small      of any size, with the inverse depth of land (shaders/gbuffer.inverse_depth.glsl) in
-  ///   its fourth component.
+  /// @param small      of any size, with the inverse depth of land (gbuffer/inverse_depth.glsl) in its
+  ///   fourth component.
   /// @param half_view  tangents of half the horizontal and half the vertical field of view.
   void Upscale(const RenderTarget& small, const DepthPrepass& outline, const glm::dvec2& half_view,
                GLuint framebuffer) const {
@@ -199,7 +200,7 @@ class Upscaler {
   DitherTexture dither_;
 };
 
-/// Returns the shader texts that display.upscale.frag.glsl is built from.
+/// Returns the shader texts that display/upscale.frag.glsl is built from.
 /// @param depth  text of a depth mode: LandPass::DepthText, or the other one.
 [[nodiscard]] std::vector<ShaderPiece> UpscalerTexts(Upscaler::Shows shows,
                                                      const ShaderPiece& depth);

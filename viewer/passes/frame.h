@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "renderer/illumination/distant_light.h"
-#include "viewer/passes/frame_light.h"
+#include "viewer/passes/frame_sky.h"
 #include "viewer/passes/painted_view.h"
 
 namespace alpenglow::viewer {

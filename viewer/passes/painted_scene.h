@@ -20,7 +20,7 @@
 #include "viewer/lamps/scene_media.h"
 #include "viewer/land/landscape.h"
 #include "viewer/passes/auto_quality.h"
-#include "viewer/passes/frame_light.h"
+#include "viewer/passes/frame_sky.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/shade/shafts.h"
 

@@ -43,7 +43,7 @@ void Append(std::vector<ShaderPiece>& texts, std::vector<ShaderPiece> pieces) {
 
 std::vector<ShaderPiece> AirTexts() {
   std::vector<ShaderPiece> texts = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view.block.glsl", "viewer/shaders/view.refracted_rays.glsl"});
+      SharedTexts(), {"viewer/shaders/view/block.glsl", "viewer/shaders/view/refracted_rays.glsl"});
   Append(texts, AirTableTexts());
   return texts;
 }
@@ -62,10 +62,10 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
                      "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * SunLeftByMedia(h, mu))\n"});
   }
   add(WithViewerPieces(
-      {}, {"viewer/shaders/air.block.glsl", "viewer/shaders/gbuffer.octahedral.glsl",
-           "viewer/shaders/gbuffer.inverse_depth.glsl", "viewer/shaders/air.sun_light.glsl"}));
+      {}, {"viewer/shaders/air/block.glsl", "viewer/shaders/gbuffer/octahedral.glsl",
+           "viewer/shaders/gbuffer/inverse_depth.glsl", "viewer/shaders/air/sun_light.glsl"}));
   if (stage.pass == PictureStage::Pass::kDisks)
-    add(WithViewerPieces({}, {"viewer/shaders/view.refracted_disks.glsl"}));
+    add(WithViewerPieces({}, {"viewer/shaders/view/refracted_disks.glsl"}));
   add(GroundTexts(kind.material, kind.land));
   if (stage.sky_by_pixel) add(SkyByPixelTexts());
   add(ShaftTexts());
@@ -306,7 +306,7 @@ PictureStage PicturePrograms::Fitting(const PictureStage& stage) {
 
 ShaderProgram PicturePrograms::Made(const PictureStage& stage) const {
   ShaderProgram made = FullScreenProgram(
-      WithViewerPieces(PictureTexts(Kind(), stage), {"viewer/shaders/picture.frag.glsl"}));
+      WithViewerPieces(PictureTexts(Kind(), stage), {"viewer/shaders/picture/picture.frag.glsl"}));
   ConnectBlocks(made);
   ConnectMaps(made);
   if (stage.has_lamps) lamps_.Connect(made);

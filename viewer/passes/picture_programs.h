@@ -3,10 +3,10 @@
 //
 // Every uniform block (block_bindings.h) and texture has a binding number of its own, so that
 // passes do not overwrite each other's bindings. The fragment stages share one text,
-// picture.frag.glsl, for land, sky and disks, preceded by texts that depend on the scene. There is
-// one program per stage, created on first use and kept. A program adds the light of sun, moon and
-// night sky, because most of its time is needed for what they light: the ground's pattern and the
-// transmittance of the air.
+// picture/picture.frag.glsl, for land, sky and disks, preceded by texts that depend on the scene.
+// There is one program per stage, created on first use and kept. A program adds the light of sun,
+// moon and night sky, because most of its time is needed for what they light: the ground's pattern
+// and the transmittance of the air.
 //
 // Drivers finish compiling a program on its first draw, which takes tenths of a second. Stages that
 // will be needed later, when shadowing begins or ends or a disk comes into view, are therefore
@@ -33,7 +33,7 @@
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/lamps/scene_media.h"
 #include "viewer/passes/frame.h"
-#include "viewer/passes/frame_light.h"
+#include "viewer/passes/frame_sky.h"
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/shade/shafts.h"
@@ -94,7 +94,7 @@ struct PictureKind {
   MediaKind media;
 };
 
-/// Returns the texts of a stage that precede picture.frag.glsl.
+/// Returns the texts of a stage that precede picture/picture.frag.glsl.
 [[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
                                                     const PictureStage& stage);
 

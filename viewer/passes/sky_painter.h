@@ -25,10 +25,12 @@
 #include "viewer/land/land_pass.h"
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/frame.h"
-#include "viewer/passes/frame_light.h"
+#include "viewer/passes/frame_sky.h"
+#include "viewer/passes/night_sky_map.h"
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/passes/picture_programs.h"
+#include "viewer/passes/refracted_disk.h"
 #include "viewer/passes/small_disk_painter.h"
 #include "viewer/passes/star_painter.h"
 #include "viewer/shade/shafts.h"
@@ -74,7 +76,7 @@ class SkyPainter {
   void Show(const Image& image);
 
   /// The linear picture. Its fourth component is the inverse depth of land
-  /// (shaders/gbuffer.inverse_depth.glsl) if one ray per pixel was drawn.
+  /// (shaders/gbuffer/inverse_depth.glsl) if one ray per pixel was drawn.
   [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
   /// Draws the depth of the land in that picture.
   void PaintOutline(const DepthPrepass& outline);

@@ -39,7 +39,7 @@ bool IsSmallDisk(const glm::dvec3& towards, double radius_rad, const PaintedView
 SmallDiskPainter::SmallDiskPainter()
     : program_(FullScreenProgram(WithViewerPieces(
           SharedTexts(),
-          {"viewer/shaders/view.block.glsl", "viewer/shaders/picture.small_disk.frag.glsl"}))),
+          {"viewer/shaders/view/block.glsl", "viewer/shaders/picture/small_disk.frag.glsl"}))),
       light_(kSide, kSide),
       outline_(kSide, kSide) {
   program_.BindBlock("View", kViewBinding);

@@ -202,9 +202,9 @@ void StarPainter::Connect(const SceneMedia& media) {
   if (program_) return;
   std::vector<ShaderPiece> texts = AirTexts();
   for (ShaderPiece& piece : MediaTexts(media.kind())) texts.push_back(std::move(piece));
-  program_.emplace(WithViewerPieces(std::move(texts), {"viewer/shaders/air.block.glsl",
-                                                       "viewer/shaders/star.vert.glsl"}),
-                   WithViewerPieces({}, {"viewer/shaders/star.frag.glsl"}), kAttributes);
+  program_.emplace(WithViewerPieces(std::move(texts), {"viewer/shaders/air/block.glsl",
+                                                       "viewer/shaders/stars/star.vert.glsl"}),
+                   WithViewerPieces({}, {"viewer/shaders/stars/star.frag.glsl"}), kAttributes);
   program_->BindBlock("Air", kAirBinding);
   program_->BindBlock("View", kViewBinding);
   program_->BindSampler("surface_map", kSurfaceUnit);

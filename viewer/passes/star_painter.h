@@ -24,12 +24,12 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/lamps/scene_media.h"
-#include "viewer/passes/frame_light.h"
+#include "viewer/passes/frame_sky.h"
 #include "viewer/passes/painted_view.h"
 
 namespace alpenglow::viewer {
 
-/// One star, in the layout of star.vert.glsl.
+/// One star, in the layout of stars/star.vert.glsl.
 struct StarPoint {
   glm::vec4 corner;      // lower left pixel; pixel of its centre
   glm::vec4 towards;     // unit vector east, north, up at the eye

@@ -91,21 +91,21 @@ std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_m
        fmt::format("#define HAS_MEDIA {}\n#define LEFT_BY_MEDIA(direction, km) {}\n",
                    has_media ? 1 : 0,
                    has_media ? "MediaTransmittance(direction, min(km, kOutOfMedia_km))" : "1.0")});
-  std::vector<std::string> files{"viewer/shaders/shafts.march.glsl",
-                                 "viewer/shaders/shafts.texel.glsl"};
-  if (has_media) files.emplace_back("viewer/shaders/shafts.media_march.glsl");
+  std::vector<std::string> files{"viewer/shaders/shafts/march.glsl",
+                                 "viewer/shaders/shafts/texel.glsl"};
+  if (has_media) files.emplace_back("viewer/shaders/shafts/media_march.glsl");
   return WithViewerPieces(std::move(air), files);
 }
 
 std::vector<ShaderPiece> ShaftTexts() {
   return WithViewerPieces(
-      {}, {"viewer/shaders/shafts.texel.glsl", "viewer/shaders/shafts.picture.glsl"});
+      {}, {"viewer/shaders/shafts/texel.glsl", "viewer/shaders/shafts/picture.glsl"});
 }
 
 ShaftPass::ShaftPass(std::vector<ShaderPiece> air, bool has_media)
     : has_media_(has_media),
       program_(FullScreenProgram(WithViewerPieces(ShaftPassTexts(std::move(air), has_media),
-                                                  {"viewer/shaders/shafts.frag.glsl"}))) {}
+                                                  {"viewer/shaders/shafts/shafts.frag.glsl"}))) {}
 
 void ShaftPass::Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye, int width,
                       int height, int surface_unit, int shade_unit, const ShaftDetail& detail) {

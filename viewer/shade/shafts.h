@@ -8,7 +8,7 @@
 // interpolates between them. In any direction the removed light is smooth over the picture, except
 // at edges of terrain, where it jumps with the length of the ray. The map therefore holds both
 // values, and the picture averages those neighbours whose rays are about as long as its own
-// (shafts.picture.glsl).
+// (shafts/picture.glsl).
 //
 // ShadeFollower updates the map for a moving eye and sun. Maps are made on a worker thread and
 // uploaded some lines per frame. A new map is requested when the sun has moved by a fifth of its
@@ -46,7 +46,7 @@
 
 namespace alpenglow::viewer {
 
-/// Resolution of ray marching in shafts.march.glsl.
+/// Resolution of ray marching in shafts/march.glsl.
 struct ShadeSteps {
   int pieces;  // per ray interval; one table fetch of the air each
   int steps;   // per piece; one fetch of the map each
@@ -66,7 +66,7 @@ class ShadeTexture {
   /// Returns the map in use. Requires Shades().
   [[nodiscard]] const SunShadowMap& map() const { return *used_.map; }
 
-  /// Sets the inputs of shafts.march.glsl in the program in use. Requires Shades().
+  /// Sets the inputs of shafts/march.glsl in the program in use. Requires Shades().
   /// @param map_from_eye  from metres in the frame (east, north, up) at the eye to metres in the
   ///   frame of the map's heights.
   void Bind(const ShaderProgram& program, int unit, const glm::dmat4& map_from_eye,
@@ -89,7 +89,7 @@ struct ShaftDetail {
 
 class ShaftPass {
  public:
-  /// @param air      texts that declare View and define SingleTo (shafts.march.glsl) and
+  /// @param air      texts that declare View and define SingleTo (shafts/march.glsl) and
   ///   SkyRadiance. The caller binds their blocks and samplers in program().
   /// @param has_media  whether MediaTexts follow them. Shadows then also remove sunlight from
   /// media.
@@ -106,7 +106,7 @@ class ShaftPass {
 
   /// Returns whether Paint has been called.
   [[nodiscard]] bool HasMap() const { return map_.has_value(); }
-  /// Sets the inputs of shafts.picture.glsl in a program, which becomes the one in use. The maps
+  /// Sets the inputs of shafts/picture.glsl in a program, which becomes the one in use. The maps
   /// are bound to two units. Requires an earlier Paint.
   void Bind(const ShaderProgram& picture, int unit) const;
 
@@ -118,7 +118,7 @@ class ShaftPass {
   int scale_ = 1;
 };
 
-/// Returns the texts of the pass that precede shafts.frag.glsl. The parameters are those of
+/// Returns the texts of the pass that precede shafts/shafts.frag.glsl. The parameters are those of
 /// ShaftPass.
 [[nodiscard]] std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_media);
 

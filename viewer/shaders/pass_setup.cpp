@@ -75,7 +75,7 @@ void SetOctaves(GroundBlock& block, const GroundPoint& eye) {
 }  // namespace
 
 ShaderProgram FullScreenProgram(const std::vector<ShaderPiece>& fragment) {
-  return ShaderProgram({ViewerPiece("viewer/shaders/view.full_screen.vert.glsl")}, fragment,
+  return ShaderProgram({ViewerPiece("viewer/shaders/view/full_screen.vert.glsl")}, fragment,
                        {{kSquare, "square"}});
 }
 

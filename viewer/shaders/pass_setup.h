@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Passes over a whole picture or over boxes of it with one fragment stage, and embedded
-// shader texts, named by their path in the tree: "viewer/shaders/hud.frag.glsl".
+// shader texts, named by their path in the tree: "viewer/shaders/hud/hud.frag.glsl".
 //
 // Uniform blocks shared by C++ and the shaders, in std140 layout. They consist of vectors of four,
 // so that offsets are equal on both sides (asserted here and checked against the driver by a test).
@@ -25,14 +25,14 @@
 namespace alpenglow::viewer {
 
 /// Returns a text that the library of its layer embeds, by its path in the tree:
-/// "viewer/shaders/land.vert.glsl". Throws InternalError if there is none.
+/// "viewer/shaders/land/land.vert.glsl". Throws InternalError if there is none.
 [[nodiscard]] ShaderPiece ViewerPiece(const std::string& name);
 
 /// Returns the texts followed by those of these names.
 [[nodiscard]] std::vector<ShaderPiece> WithViewerPieces(std::vector<ShaderPiece> texts,
                                                         const std::vector<std::string>& names);
 
-/// Returns a program of view.full_screen.vert.glsl and a fragment stage of these texts.
+/// Returns a program of view/full_screen.vert.glsl and a fragment stage of these texts.
 [[nodiscard]] ShaderProgram FullScreenProgram(const std::vector<ShaderPiece>& fragment);
 
 /// Draws over the whole viewport of the bound target.
@@ -60,7 +60,7 @@ inline constexpr std::size_t kGpuBands = 4;
 inline constexpr MediumUse kForViewer{
     .most_wavelengths = kGpuBands, .shows_colours = true, .purpose = "skyview"};
 
-/// Mirrors the uniform block `Air` of air.block.glsl. Lengths in km.
+/// Mirrors the uniform block `Air` of air/block.glsl. Lengths in km.
 struct AirBlock {
   glm::vec4 rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption, ground_albedo;
   glm::vec4 red_from_bands, green_from_bands, blue_from_bands;
@@ -70,7 +70,7 @@ static_assert(sizeof(AirBlock) == 12 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, ground_albedo) == 4 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, wavelengths) == 11 * sizeof(glm::vec4));
 
-/// Mirrors the uniform block `View` of view.block.glsl.
+/// Mirrors the uniform block `View` of view/block.glsl.
 struct ViewBlock {
   glm::vec4 view_right, view_up, view_forward;
   glm::vec4 sun, sun_for_air, sun_irradiance;
@@ -83,7 +83,7 @@ static_assert(sizeof(ViewBlock) == 15 * sizeof(glm::vec4));
 static_assert(offsetof(ViewBlock, eye) == 9 * sizeof(glm::vec4));
 static_assert(offsetof(ViewBlock, night_level) == 14 * sizeof(glm::vec4));
 
-/// Mirrors the uniform block `Ground` of ground.glsl.
+/// Mirrors the uniform block `Ground` of ground/pattern.glsl.
 struct GroundBlock {
   glm::vec4 conifers, leaves, yellow_leaves, bare_trees, meadow, dry_meadow, rock, snow;
   glm::vec4 cover_lines, green_lines;

@@ -33,8 +33,8 @@ constexpr double kPixel_rad = 8e-4;
 
 std::vector<ShaderPiece> Texts(const GroundMaterial& material) {
   std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
-                      "viewer/shaders/air.sun_light.glsl"});
+      SharedTexts(), {"viewer/shaders/air/block.glsl", "viewer/shaders/view/block.glsl",
+                      "viewer/shaders/air/sun_light.glsl"});
   pieces.push_back(tests::SunInClosedForm());
   for (ShaderPiece& piece : GroundTexts(material, {true, true})) pieces.push_back(std::move(piece));
   for (ShaderPiece& piece : SkyByPixelTexts()) pieces.push_back(std::move(piece));

@@ -9,7 +9,7 @@ namespace alpenglow::tests {
 
 using namespace viewer;
 
-/// After air.block.glsl; stands for the functions of air.tables.glsl.
+/// After air/block.glsl; stands for the functions of air/tables.glsl.
 inline ShaderPiece SunInClosedForm() {
   return {"sun in closed form",
           "vec4 TransmittanceToSun(float altitude_km, float mu_s) {\n"

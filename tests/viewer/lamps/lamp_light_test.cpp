@@ -547,7 +547,7 @@ struct LampNight {
     LampPainter painter(lamps, quality, {});
     painter.Prepare(lamps, {{0.0, 0.0, 6.0}, glm::dmat3(1.0), 6.0, kLampPixel_rad}, 0.0);
     std::vector<ShaderPiece> texts =
-        WithViewerPieces(SharedTexts(), {"viewer/shaders/view.block.glsl"});
+        WithViewerPieces(SharedTexts(), {"viewer/shaders/view/block.glsl"});
     texts.insert(texts.end(), painter.texts().begin(), painter.texts().end());
     texts.push_back({"stage", kStage});
     const ShaderProgram program = FullScreenProgram(texts);

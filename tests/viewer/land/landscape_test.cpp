@@ -53,7 +53,7 @@ const glm::vec4& PixelAt(const std::vector<glm::vec4>& picture, int x, int y) {
   return picture[static_cast<std::size_t>(y * kWidth + x)];
 }
 
-// Written apart from gbuffer.octahedral.glsl.
+// Written apart from gbuffer/octahedral.glsl.
 glm::dvec3 UnitOf(const glm::vec4& surface) {
   const double x = surface.x, y = surface.y, z = 1.0 - std::abs(x) - std::abs(y);
   if (z >= 0.0) return glm::normalize(glm::dvec3(x, y, z));

@@ -269,7 +269,7 @@ TEST_F(LevelRanges, NearTheEyeEverySampleIsDrawnAndFromAboveFewer) {
   EXPECT_LT(far.size(), near.size());
 }
 
-// --- the drawn surface while the eye flies, followed vertex by vertex as land.vert.glsl moves them ---
+// --- the drawn surface while the eye flies: every vertex moves as land/land.vert.glsl moves it ---
 
 class DrawnSurface {
  public:

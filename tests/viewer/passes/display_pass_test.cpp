@@ -228,7 +228,7 @@ class UpscalerTest : public tests::Headless {
     }
     return {0.5F, 0.7F, 0.9F, 0.0F};
   }
-  /// Returns the inverse depth by the formula of gbuffer.inverse_depth.glsl.
+  /// Returns the inverse depth by the formula of gbuffer/inverse_depth.glsl.
   [[nodiscard]] static float InverseDepthAt(double along_view_m) {
     return static_cast<float>(100.0 / along_view_m);
   }
@@ -243,7 +243,7 @@ class UpscalerTest : public tests::Headless {
       }
     }
   }
-  /// Depth as gbuffer.reversed_depth.glsl has it: 0.1 m is 1.
+  /// Depth as gbuffer/reversed_depth.glsl has it: 0.1 m is 1.
   static void FillDepth(const DepthPrepass& outline,
                         const std::function<float(int x, int y)>& inverse_depth) {
     outline.Bind();

@@ -17,7 +17,7 @@
 #include "renderer/picture/sky_pixels.h"
 #include "tests/fixtures/bare_scene.h"
 #include "viewer/gl/render_target.h"
-#include "viewer/passes/frame_light.h"
+#include "viewer/passes/night_sky_map.h"
 
 namespace alpenglow::viewer {
 namespace {

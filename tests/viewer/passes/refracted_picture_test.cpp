@@ -20,6 +20,7 @@
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/passes/painted_view.h"
+#include "viewer/passes/refracted_disk.h"
 #include "viewer/passes/sky_painter.h"
 #include "viewer/shaders/pass_setup.h"
 
@@ -63,7 +64,7 @@ TEST_F(RefractedOnCard, LandIsDisplacedAsByTheFormulaThatIsReference) {
                        eye_m / 1000.0, bend.radius_km) +
            "#define LOOK_RADIUS bend.x\n#define BEND_TOP bend.y\n"
            "#define BEND_USUAL bend.z\n"});
-  pieces.push_back(ViewerPiece("viewer/shaders/view.refracted_rays.glsl"));
+  pieces.push_back(ViewerPiece("viewer/shaders/view/refracted_rays.glsl"));
   std::vector<tests::Arguments<float>> places;
   for (const float away_m : {5e3F, 50e3F, 100e3F, 200e3F})
     for (const float rise_m : {-5000.0F, -3000.0F, 500.0F}) places.push_back({away_m, rise_m});

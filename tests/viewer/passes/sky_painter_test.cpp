@@ -28,7 +28,7 @@
 #include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
-#include "viewer/passes/frame_light.h"
+#include "viewer/passes/frame_sky.h"
 #include "viewer/passes/panorama.h"
 
 namespace alpenglow::viewer {

@@ -86,7 +86,7 @@ std::vector<double> ErrorsUnder(double sun_degrees, const ShadeSteps& steps) {
   map_from_eye[3] = glm::dvec4(eye, 1.0);
 
   const std::vector<ShaderPiece> pieces = {{"air", kSingleTo},
-                                           ViewerPiece("viewer/shaders/shafts.march.glsl")};
+                                           ViewerPiece("viewer/shaders/shafts/march.glsl")};
   std::vector<tests::Arguments<float>> points;
   for (const Ray& ray : rays)
     points.push_back({static_cast<float>(ray.direction.x), static_cast<float>(ray.direction.y),
@@ -142,7 +142,7 @@ TEST_F(Shafts, OfARayThroughAHoleInTheLandEndAtItsLowestGround) {
   map_from_eye[3] = glm::dvec4(400.0, 300.0, 4000.0, 1.0);
   const auto down_km = static_cast<float>(1e-3 * (4000.0 - map->floor_m));
   const std::vector<float> taken =
-      tests::EvaluateOnGpu({{"air", kSingleTo}, ViewerPiece("viewer/shaders/shafts.march.glsl")},
+      tests::EvaluateOnGpu({{"air", kSingleTo}, ViewerPiece("viewer/shaders/shafts/march.glsl")},
                            "MarchedShade(vec3(0.0, 0.0, -1.0), a[0]).x", {{1e9F}, {down_km}},
                            [&](const ShaderProgram& program) {
                              texture.Bind(program, 1, map_from_eye, {4, 8});
@@ -153,7 +153,7 @@ TEST_F(Shafts, OfARayThroughAHoleInTheLandEndAtItsLowestGround) {
 
 TEST_F(Shafts, SunlightOverAnEdgeSumsUpToThatOfTheLimbDarkenedDisk) {
   const std::vector<ShaderPiece> pieces = {{"air", kSingleTo},
-                                           ViewerPiece("viewer/shaders/shafts.march.glsl")};
+                                           ViewerPiece("viewer/shaders/shafts/march.glsl")};
   std::vector<tests::Arguments<float>> points;
   for (int i = -30; i <= 30; ++i) points.push_back({0.1F * static_cast<float>(i)});
   const std::vector<float> sums = tests::EvaluateOnGpu(pieces, "SunlightUpTo(a[0])", points);
@@ -169,7 +169,7 @@ TEST_F(Shafts, SunlightOverAnEdgeSumsUpToThatOfTheLimbDarkenedDisk) {
 
 TEST_F(Shafts, DarknessBetweenTwoPlacesIsTheMeanOfThatOnTheWay) {
   const std::vector<ShaderPiece> pieces = {{"air", kSingleTo},
-                                           ViewerPiece("viewer/shaders/shafts.march.glsl")};
+                                           ViewerPiece("viewer/shaders/shafts/march.glsl")};
   std::vector<tests::Arguments<float>> points;
   std::vector<double> expected;
   for (const float from : {-5e4F, -300.0F, -4.0F, -1.0F, 0.2F, 3.0F, 700.0F}) {
@@ -196,7 +196,7 @@ TEST_F(Shafts, DarknessBetweenTwoPlacesIsTheMeanOfThatOnTheWay) {
 }
 
 TEST_F(Shafts, ATexelKeepsLightAndDistance) {
-  const ShaderPiece texel = ViewerPiece("viewer/shaders/shafts.texel.glsl");
+  const ShaderPiece texel = ViewerPiece("viewer/shaders/shafts/texel.glsl");
   std::vector<tests::Arguments<float>> points;
   for (const float light : {0.0F, 1e-6F, 0.37F, 80.0F}) {
     for (const float km : {0.0015F, 0.2F, 17.3F, 900.0F, 1e9F}) points.push_back({light, km});
@@ -238,7 +238,7 @@ class ShaftPicture {
   /// Returns the picture of the light that shade removes.
   [[nodiscard]] Image Painted(const ShadeTexture& shade, const ShaftDetail& detail) const {
     constexpr GLuint kViewBinding = 1;
-    const std::vector<ShaderPiece> air = {ViewerPiece("viewer/shaders/view.block.glsl"),
+    const std::vector<ShaderPiece> air = {ViewerPiece("viewer/shaders/view/block.glsl"),
                                           {"air", kSingleTo}};
     ShaftPass pass(air);
     ViewBlock view{};

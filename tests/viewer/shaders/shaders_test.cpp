@@ -132,39 +132,40 @@ class Glslang : public TemporaryFolder {
 };
 
 TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
-  ShaderPiece view = ViewerPiece("viewer/shaders/view.block.glsl");
-  ExpectAccepted({}, "view.full_screen.vert.glsl");
-  ExpectAccepted({}, "hud.vert.glsl");
-  ExpectAccepted({}, "hud.frag.glsl");
+  ShaderPiece view = ViewerPiece("viewer/shaders/view/block.glsl");
+  ExpectAccepted({}, "view/full_screen.vert.glsl");
+  ExpectAccepted({}, "hud/hud.vert.glsl");
+  ExpectAccepted({}, "hud/hud.frag.glsl");
   for (const std::string& curve : ToneCurveNames()) {
     for (const bool dithers : {false, true})
       ExpectAccepted(ToneMapPassTexts(ToneCurveFromName(curve), dithers),
-                     "display.tone_map.frag.glsl");
+                     "display/tone_map.frag.glsl");
   }
   const ShaderPiece single = {
       "air",
       "vec4 SingleTo(vec3 direction, float km) { return vec4(km * direction.z); }\n"
       "vec4 SkyRadiance(vec3 direction) { return vec4(direction.z); }\n"};
-  ExpectAccepted(ShaftPassTexts({view, single}, false), "shafts.frag.glsl");
+  ExpectAccepted(ShaftPassTexts({view, single}, false), "shafts/shafts.frag.glsl");
   std::vector<ShaderPiece> in_fog =
-      WithViewerPieces(SharedTexts(), {"viewer/shaders/view.block.glsl"});
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/view/block.glsl"});
   in_fog.push_back(single);
   for (ShaderPiece& piece : MediaTexts({PhaseKind::kHenyeyGreenstein}))
     in_fog.push_back(std::move(piece));
-  ExpectAccepted(ShaftPassTexts(std::move(in_fog), true), "shafts.frag.glsl");
+  ExpectAccepted(ShaftPassTexts(std::move(in_fog), true), "shafts/shafts.frag.glsl");
   constexpr auto kSurface = LandDrawn::kSurface;
   const std::vector<LandProgramKind> kinds{{kSurface, false, false, false, false},
                                            {kSurface, true, true, true, true},
                                            {kSurface, true, false, true, false}};
-  for (const LandProgramKind& kind : kinds) ExpectAccepted(LandVertexTexts(kind), "land.vert.glsl");
+  for (const LandProgramKind& kind : kinds)
+    ExpectAccepted(LandVertexTexts(kind), "land/land.vert.glsl");
   for (const char* depth : {"reversed", "logarithmic"}) {
     const ShaderPiece depth_text =
-        ViewerPiece(fmt::format("viewer/shaders/gbuffer.{}_depth.glsl", depth));
-    for (const char* drawn : {"land.frag.glsl", "land.depth_prepass.frag.glsl"})
+        ViewerPiece(fmt::format("viewer/shaders/gbuffer/{}_depth.glsl", depth));
+    for (const char* drawn : {"land/land.frag.glsl", "land/depth_prepass.frag.glsl"})
       for (const LandProgramKind& kind : kinds)
         ExpectAccepted(LandFragmentTexts(kind, depth_text), drawn);
     for (const auto shows : {Upscaler::Shows::kCodes, Upscaler::Shows::kLight})
-      ExpectAccepted(UpscalerTexts(shows, depth_text), "display.upscale.frag.glsl");
+      ExpectAccepted(UpscalerTexts(shows, depth_text), "display/upscale.frag.glsl");
   }
 }
 
@@ -189,17 +190,17 @@ TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
     const Scene scene = LampScene(with_fog);
     const SceneLamps lamps(scene, LoadGround(scene), scene.medium);
     std::vector<ShaderPiece> texts = SharedTexts();
-    texts.push_back(ViewerPiece("viewer/shaders/view.block.glsl"));
+    texts.push_back(ViewerPiece("viewer/shaders/view/block.glsl"));
     std::vector<ShaderPiece> corners = texts;
     const std::vector<ShaderPiece> of_lamps = LampTexts(lamps, {.nodes = 6, .step = 4});
     texts.insert(texts.end(), of_lamps.begin(), of_lamps.end());
     corners.insert(corners.end(), of_lamps.begin(),
                    of_lamps.end() - 1);  // the last is of pixels
-    corners.push_back(ViewerPiece("viewer/shaders/lamps.corners.glsl"));
-    ExpectAccepted(corners, "lamps.core.vert.glsl");
-    ExpectAccepted(corners, "lamps.disk.vert.glsl");
+    corners.push_back(ViewerPiece("viewer/shaders/lamps/corners.glsl"));
+    ExpectAccepted(corners, "lamps/core.vert.glsl");
+    ExpectAccepted(corners, "lamps/disk.vert.glsl");
     for (const char* stage :
-         {"lamps.airlight.frag.glsl", "lamps.core.frag.glsl", "lamps.disk.frag.glsl"}) {
+         {"lamps/airlight.frag.glsl", "lamps/core.frag.glsl", "lamps/disk.frag.glsl"}) {
       ExpectAccepted(texts, stage);
     }
   }
@@ -232,7 +233,7 @@ TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
       for (const PictureStage& of_lights : StagesOfLights()) {
         const PictureStage stage = of_lights.In(pass);
         ExpectAccepted(PictureTexts({material, painter, {true, true}, media}, stage),
-                       "picture.frag.glsl");
+                       "picture/picture.frag.glsl");
       }
     }
   }
@@ -295,7 +296,7 @@ TEST_F(TexturesOfThePicture, AreNoMoreThanTheirNumberSays) {
                               PictureStage::Pass::kUnoccludedSky}) {
         const PictureStage stage = of_land.In(pass);
         const int read = TexturesOf(FullScreenProgram(WithViewerPieces(
-            PictureTexts(of.Kind(), stage), {"viewer/shaders/picture.frag.glsl"})));
+            PictureTexts(of.Kind(), stage), {"viewer/shaders/picture/picture.frag.glsl"})));
         const int said = TexturesOf(of.Kind(), stage);
         EXPECT_LE(read, said);
         // The number counts the lamps of a scene with all kinds, and the sky over any planet.
@@ -339,8 +340,8 @@ TEST_F(TexturesOfThePicture, ThatDoNotFitADriverAreLeftOutInWords) {
 std::vector<ShaderPiece> TextsOfCover(const GroundCover& cover, const char* lights) {
   std::vector<ShaderPiece> texts{{"lights", lights}};
   for (ShaderPiece& piece : WithViewerPieces(
-           SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
-                           "viewer/shaders/view.lights.glsl", "viewer/shaders/air.sun_light.glsl"}))
+           SharedTexts(), {"viewer/shaders/air/block.glsl", "viewer/shaders/view/block.glsl",
+                           "viewer/shaders/view/lights.glsl", "viewer/shaders/air/sun_light.glsl"}))
     texts.push_back(std::move(piece));
   texts.push_back(tests::SunInClosedForm());
   const std::vector<double> bands{450.0, 550.0, 650.0};
@@ -408,8 +409,8 @@ GLint SizeOf(const ShaderProgram& program, const char* block) {
 // A program that reads all blocks of the picture.
 ShaderProgram ProgramOfBlocks() {
   std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view.block.glsl", "viewer/shaders/air.block.glsl",
-                      "viewer/shaders/ground.glsl"});
+      SharedTexts(), {"viewer/shaders/view/block.glsl", "viewer/shaders/air/block.glsl",
+                      "viewer/shaders/ground/pattern.glsl"});
   pieces.push_back({"main", "void main() { gl_Position = shell + eye + conifers; }\n"});
   return ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
 }
@@ -526,7 +527,7 @@ std::vector<float> GroundValues(const MountainSurface& surface, const std::strin
   block.pattern_up = {0.0F, 0.0F, 1.0F, 0.0F};
   const GlBuffer buffer;
   const std::vector<ShaderPiece> texts =
-      WithViewerPieces(SharedTexts(), {"viewer/shaders/ground.glsl"});
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/ground/pattern.glsl"});
   return tests::EvaluateOnGpu(texts, expression, GroundPoints(), [&](const ShaderProgram& program) {
     glBindBufferBase(GL_UNIFORM_BUFFER, 3, buffer.id());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
@@ -605,8 +606,8 @@ std::vector<tests::Arguments<float>> RisingDisks() {
 
 std::vector<float> OfDisks(const char* component) {
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
-                      "viewer/shaders/air.sun_light.glsl"});
+      SharedTexts(), {"viewer/shaders/air/block.glsl", "viewer/shaders/view/block.glsl",
+                      "viewer/shaders/air/sun_light.glsl"});
   return tests::EvaluateOnGpu(pieces, std::string("DiskOverHorizon(a[0], a[1], a[2])") + component,
                               RisingDisks());
 }
@@ -630,7 +631,7 @@ TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
   pieces.push_back({"view",
                     "const vec4 sun = vec4(0.6, 0.0, 0.8, 0.00465);\n"
                     "const vec4 wavelengths = vec4(0.68, 0.55, 0.44, 0.35);\n"});
-  pieces.push_back(ViewerPiece("viewer/shaders/air.sun_light.glsl"));
+  pieces.push_back(ViewerPiece("viewer/shaders/air/sun_light.glsl"));
   constexpr std::array<double, 4> kWavelengths_nm{680.0, 550.0, 440.0, 350.0};
   std::vector<tests::Arguments<float>> points;
   std::vector<double> radii;
@@ -660,8 +661,8 @@ TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
   MoonDisk moon{Unrefracted({0.6, 0.0, 0.8}), {}, 0.0045, 0.05, 0.001};
   moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
-                      "viewer/shaders/air.sun_light.glsl"});
+      SharedTexts(), {"viewer/shaders/air/block.glsl", "viewer/shaders/view/block.glsl",
+                      "viewer/shaders/air/sun_light.glsl"});
   std::vector<tests::Arguments<float>> points;
   std::vector<double> expected;
   for (double right = -1.3; right <= 1.3; right += 0.1) {

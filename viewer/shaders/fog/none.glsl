@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Replaces fog.light.glsl in scenes without fog.
+// Replaces fog/light.glsl in scenes without fog.
 #define MEDIA_STRETCHES 1
 
 const float kOutOfMedia_km = 1e3;

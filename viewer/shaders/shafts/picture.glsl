@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light that shadows remove from the ray of a pixel, from the map of shafts.frag.glsl. Of the four
-// nearest rays in the map, those with about the same length are averaged.
+// Light that shadows remove from the ray of a pixel, from the map of shafts/shafts.frag.glsl. Of
+// the four nearest rays in the map, those with about the same length are averaged.
 
 uniform sampler2D shaft_map, media_shaft_map;
 uniform vec2 shaft_place;  // from pixels to the map: factor, offset

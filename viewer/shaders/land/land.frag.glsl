@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the visible land to a GBuffer. MOONLIT as in land.vert.glsl.
+// Writes the visible land to a GBuffer. MOONLIT as in land/land.vert.glsl.
 in vec3 facing;
 in vec4 sky_light;
 in float disk_height;

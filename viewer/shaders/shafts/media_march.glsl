@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sunlight in media that terrain shadows remove from a ray, by marching through a SunShadowMap as
-// MarchedShade (shafts.march.glsl) does for air. For flat ground the steps' shares of the ray's
+// MarchedShade (shafts/march.glsl) does for air. For flat ground the steps' shares of the ray's
 // light increase linearly, because a low sun shines on the top of a layer, where rays enter.
 // MediaSunTo gives the light of each step.
 

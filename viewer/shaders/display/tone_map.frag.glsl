@@ -2,7 +2,7 @@
 // Tone mapping of the picture for a display: white balance, exposure, gamut, tone curve and dither,
 // as in Develop (look.h). AgX is read from its table (display_pass.h). Defined before this text:
 // CURVE_ and the name of the tone curve in capitals (CURVE_PBR_NEUTRAL for pbr-neutral); DITHERS, 0
-// for codes that display.upscale.frag.glsl reads, else 1.
+// for codes that display/upscale.frag.glsl reads, else 1.
 uniform sampler2D linear_picture;  // any size
 uniform sampler3D tone_table;
 uniform vec2 stops;        // relative to saturation, at the first and last node of the table

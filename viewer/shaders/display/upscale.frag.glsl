@@ -3,7 +3,7 @@
 // surface as this fragment, they are interpolated bilinearly. At an edge of land, whose position
 // `outline` holds at screen resolution, the pixels at about the fragment's distance are used.
 // DITHERS is 1 for display codes, else 0.
-uniform sampler2D small_picture;  // fourth component: InverseDepthOf (gbuffer.inverse_depth.glsl)
+uniform sampler2D small_picture;  // fourth component: InverseDepthOf (gbuffer/inverse_depth.glsl)
 uniform sampler2D outline;        // depth of DepthPrepass; of the screen's size
 uniform vec2 half_view;           // tangents of half the horizontal and vertical field of view
 in vec2 screen;

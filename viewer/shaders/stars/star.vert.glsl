@@ -13,7 +13,7 @@ flat out vec4 up;
 flat out vec4 last;
 flat out vec2 corner;
 
-uniform sampler2D surface_map;  // output of land.frag.glsl
+uniform sampler2D surface_map;  // output of land/land.frag.glsl
 uniform vec2 picture_size;      // [pixels]
 uniform bool surface_hides;     // land hides stars by surface_map, of picture_size; else by depth
 

@@ -8,7 +8,7 @@ layout(std140) uniform View {
   vec4 sun;             // unit vector to the apparent sun; angular radius [rad]
   vec4 sun_for_air;     // unit vector to the sun whose straight rays light the air (SunForAir)
   vec4 sun_irradiance;  // above the air, one value per band [W m^-2 nm^-1]
-  vec4 bend;         // refraction (view.refracted_rays.glsl): apparent radius of the planet; altitude
+  vec4 bend;         // refraction (view/refracted_rays.glsl): apparent radius of the planet; altitude
                      // above which rays are straight [km]; usual curvature [1/km], 0: none
   vec4 bend_slopes;  // curvature of level rays at altitude 0, by layer [1/km]
   vec4 bend_falls;   // decrease of the curvature with altitude [1/km]

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Refracted disks of sun and moon near the horizon, with dispersion and extinction per band:
-// RefractedDisk of painted_view.h. The block View must hold the true sun, and `moon`
-// (air.sun_light.glsl) the true moon.
+// RefractedDisk of refracted_disk.h. The block View must hold the true sun, and `moon`
+// (air/sun_light.glsl) the true moon.
 #define DISK_NODES 13
 
 // Nodes by elevation, first of the sun, then of the moon; one component per band.

@@ -313,7 +313,7 @@ vec4 LampFromWithin(Lamp lamp, vec3 direction) {
 
 // Returns the light of all lamps scattered into the eye in front of a distance [W m^-2 sr^-1
 // nm^-1].
-// @param with_cores  1: all of it; 0: without the part that lamps.core.frag.glsl draws.
+// @param with_cores  1: all of it; 0: without the part that lamps/core.frag.glsl draws.
 vec4 LampAirlightIn(vec3 direction, float distance_m, float with_cores) {
   vec4 sum = vec4(0.0);
   int even = int(lamp_count.w + 0.5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light of lamps scattered by the air in a picture [cd/m^2, linear sRGB], from the lattice of
-// lamps.airlight.frag.glsl and the cores of lamps.core.frag.glsl, or summed here.
+// lamps/airlight.frag.glsl and the cores of lamps/core.frag.glsl, or summed here.
 
 // Returns the distance at which the ray of a pixel ends [m]: at terrain (surface_m, 0: none), at
 // the bare planet, or nowhere.

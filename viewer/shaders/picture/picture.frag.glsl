@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
 // The linear picture [cd/m^2, linear sRGB] lit by the lights of the sky, and the inverse depth of
-// land (gbuffer.inverse_depth.glsl). The passes are separated by the depth test against land,
+// land (gbuffer/inverse_depth.glsl). The passes are separated by the depth test against land,
 // because software drivers evaluate both sides of a branch. Defined before this text:
 //   PASS          LAND_PASS: land and the air in front of it; SKY_PASS: sky and bare planet;
 //                 OPEN_SKY_PASS: sky above the planet; DISK_PASS: disks of sun and moon
-//   TWO_LIGHTS    defined if there is a second light, which casts no shadows (frame_light.h)
+//   TWO_LIGHTS    defined if there is a second light, which casts no shadows (frame_sky.h)
 //   OTHER_HAS_SET  defined if that light sends no beam to the ground (HasSetOnGround)
 //   HAS_NIGHT     light of the night sky on land, air and sky
 //   HAS_SHADE, HAS_LAMPS, HAS_MEDIA
-//   SKY_BY_PIXEL  irradiance by the sky on land is computed here (sky_by_pixel.irradiance.glsl), not by vertex
+//   SKY_BY_PIXEL  irradiance by the sky on land is computed here (sky_by_pixel/irradiance.glsl),
+//                 not by vertex
 in vec2 screen;
 out vec4 picture;
 
-uniform sampler2D surface_map;     // output of land.frag.glsl
-uniform sampler2D sky_on_surface;  // output of land.frag.glsl for the first light
+uniform sampler2D surface_map;     // output of land/land.frag.glsl
+uniform sampler2D sky_on_surface;  // output of land/land.frag.glsl for the first light
 #ifdef TWO_LIGHTS
 uniform sampler2D other_sky_on_surface;
 #endif
@@ -170,7 +171,7 @@ void main() {
 
 #if PASS == SKY_PASS || PASS == OPEN_SKY_PASS
 #if HAS_NIGHT
-uniform sampler2D night_sky;  // NightSkyMap of frame_light.h
+uniform sampler2D night_sky;  // NightSkyMap of night_sky_map.h
 
 vec4 NightAbove(vec3 direction) {
   float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
