@@ -135,13 +135,25 @@ const BandLight* SpreadLight::At(int x, int y) const {
   return found == pixels_.end() ? nullptr : &found->second.radiance;
 }
 
+// A bell over the distance i - f from the place, where f in [-1/2, 1/2] is the place in its pixel,
+//
+//   exp(-(i - f)^2 / 2 s^2) = exp(-i^2 / 2 s^2) (exp(f / s^2))^i exp(-f^2 / 2 s^2),
+//
+// needs one exponential, since the last factor is common to all pixels.
 StarBell StarBellAround(double place) {
-  constexpr double kDeviation = 0.5;
-  StarBell weights{};
-  double sum = 0.0;
-  for (int i = 0; i < 2 * kStarReach + 1; ++i) {
-    const double off = (std::floor(place) + i - kStarReach + 0.5 - place) / kDeviation;
-    sum += weights.at(static_cast<std::size_t>(i)) = std::exp(-0.5 * off * off);
+  constexpr double kDeviation = 0.5, kPerVariance = 1.0 / (kDeviation * kDeviation);
+  static const StarBell kAtCentre = [] {
+    StarBell bell{};
+    for (int i = -kStarReach; i <= kStarReach; ++i)
+      bell.at(static_cast<std::size_t>(i + kStarReach)) = std::exp(-0.5 * kPerVariance * i * i);
+    return bell;
+  }();
+  const double along = std::exp(kPerVariance * (place - std::floor(place) - 0.5));
+  StarBell weights = kAtCentre;
+  double after = 1.0, before = 1.0, sum = kAtCentre[kStarReach];
+  for (std::size_t i = 1; i <= kStarReach; ++i) {
+    sum += weights[kStarReach + i] *= after *= along;
+    sum += weights[kStarReach - i] *= before /= along;
   }
   for (double& weight : weights) weight /= sum;
   return weights;

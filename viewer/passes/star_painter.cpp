@@ -19,39 +19,114 @@ namespace {
 
 glm::vec4 FirstFour(const StarBell& bell) { return {bell[0], bell[1], bell[2], bell[3]}; }
 
-// Returns the solid angle of a pixel. Pixels are squares on a plane at distance 1; off the axis
-// they are oblique and farther away, which gives the factor along^3.
-double PixelSolidAngle(const PaintedView& view, double along) {
-  const double side = PixelAngle(view);
-  return side * side * along * along * along;
-}
-
 /// Returns the direction with the same azimuth at another elevation.
+/// @param direction  not vertical.
 glm::dvec3 AtElevation(const glm::dvec3& direction, double elevation_rad) {
-  return DirectionFromAngles(elevation_rad, std::atan2(direction.x, direction.y)).xyz;
+  const double level =
+      std::cos(elevation_rad) / std::sqrt(direction.x * direction.x + direction.y * direction.y);
+  return {level * direction.x, level * direction.y, std::sin(elevation_rad)};
 }
 
 double Elevation(const glm::dvec3& direction) {
   return std::asin(std::clamp(direction.z, -1.0, 1.0));
 }
 
-/// Returns the weights of the pixels around a place, relative to the solid angle of each: it is
-/// proportional to the third power of the cosine to the axis of the view, which is `along` at the
-/// place.
-/// @param tangent      the place's coordinate in the plane at distance 1 before the eye.
-/// @param pixel_width  in this plane.
-StarBell BellPerPixel(double place, double tangent, double pixel_width, double along) {
-  StarBell bell = StarBellAround(place);
-  const double first = std::floor(place) - kStarReach + 0.5;
-  for (std::size_t i = 0; i < bell.size(); ++i) {
-    const double there = tangent + (first + static_cast<double>(i) - place) * pixel_width;
-    const double change = along * along * (there * there - tangent * tangent);
-    bell[i] *= static_cast<StarBell::value_type>((1.0 + change) * std::sqrt(1.0 + change));
+/// The place of a star in a picture.
+struct StarPlace {
+  glm::dvec2 pixel;
+  glm::dvec2 tangent;  // coordinates in the plane at distance 1 before the eye
+  double along;        // cosine of the angle to the axis of the view
+};
+
+/// Pixels of a view in the plane at distance 1 before the eye.
+class StarPlane {
+ public:
+  explicit StarPlane(const PaintedView& view)
+      : axes_(LandViewOf(view)),
+        half_(glm::length(axes_.right), glm::length(axes_.up)),
+        sides_(view.width, view.height),
+        middle_(view.part.x * view.part.z, view.part.y * view.part.w),
+        pixel_width_(2.0 * half_ / sides_),
+        pixel_angle_(PixelAngle(view)) {}
+
+  [[nodiscard]] const glm::dvec3& forward() const { return axes_.forward; }
+  [[nodiscard]] double pixel_angle() const { return pixel_angle_; }
+
+  /// Returns the place of a direction in the picture or within `margin` pixels of it.
+  [[nodiscard]] std::optional<StarPlace> PlaceOf(const glm::dvec3& towards, double margin) const {
+    const double along = glm::dot(towards, axes_.forward);
+    if (along <= 1e-3) return std::nullopt;
+    const glm::dvec2 tangent =
+        glm::dvec2(glm::dot(towards, axes_.right), glm::dot(towards, axes_.up)) / (along * half_);
+    const glm::dvec2 pixel = 0.5 * sides_ * (1.0 + tangent / half_ - middle_);
+    const bool is_in = pixel.x > -margin && pixel.x < sides_.x + margin && pixel.y > -margin &&
+                       pixel.y < sides_.y + margin;
+    return is_in ? std::optional(StarPlace{pixel, tangent, along}) : std::nullopt;
   }
-  return bell;
+
+  /// Returns the cosine of the angle from the axis to the farthest place within `margin` pixels.
+  [[nodiscard]] double LeastCosine(double margin) const {
+    const glm::dvec2 corner = (glm::abs(middle_) + 1.0 + 2.0 * margin / sides_) * half_;
+    return 1.0 / std::sqrt(1.0 + glm::dot(corner, corner));
+  }
+
+  /// Returns the weights of the pixels around a place, relative to the solid angle of each: it is
+  /// proportional to the third power of the cosine to the axis of the view.
+  [[nodiscard]] StarBell BellPerPixel(const StarPlace& at, glm::length_t axis) const {
+    const double place = at.pixel[axis], tangent = at.tangent[axis];
+    StarBell bell = StarBellAround(place);
+    const double first = std::floor(place) - kStarReach + 0.5;
+    for (std::size_t i = 0; i < bell.size(); ++i) {
+      const double there = tangent + (first + static_cast<double>(i) - place) * pixel_width_[axis];
+      const double change = at.along * at.along * (there * there - tangent * tangent);
+      bell[i] *= (1.0 + change) * std::sqrt(1.0 + change);
+    }
+    return bell;
+  }
+
+  /// Returns the solid angle of a pixel. Pixels are squares on a plane at distance 1; off the axis
+  /// they are oblique and farther away, which gives the factor along^3.
+  [[nodiscard]] double PixelSolidAngle(double along) const {
+    return pixel_angle_ * pixel_angle_ * along * along * along;
+  }
+
+ private:
+  LandView axes_;
+  glm::dvec2 half_, sides_, middle_, pixel_width_;  // half_: of the picture's extent
+  double pixel_angle_;
+};
+
+StarPoint PointOf(const StarLight& light, const glm::dvec3& towards, const StarPlace& at,
+                  const StarPlane& plane) {
+  const StarBell across = plane.BellPerPixel(at, 0), up = plane.BellPerPixel(at, 1);
+  glm::vec4 radiance(0.0F);
+  const auto per_sr = static_cast<float>(1.0 / plane.PixelSolidAngle(at.along));
+  for (std::size_t band = 0; band < light.irradiance.count; ++band)
+    radiance[static_cast<glm::length_t>(band)] = per_sr * light.irradiance[band];
+  const glm::dvec2 centre = glm::floor(at.pixel);
+  return {{centre.x - kStarReach, centre.y - kStarReach, centre.x, centre.y},
+          {glm::vec3(towards), 0.0F},
+          radiance,
+          FirstFour(across),
+          FirstFour(up),
+          {across[4], up[4], 0.0F, 0.0F}};
 }
 
 }  // namespace
+
+StarList::StarList(std::vector<StarLight> lights) : lights_(std::move(lights)) {
+  std::stable_sort(lights_.begin(), lights_.end(),
+                   [](const StarLight& a, const StarLight& b) { return a.lux > b.lux; });
+  directions_.reserve(lights_.size());
+  for (const StarLight& light : lights_) directions_.emplace_back(light.direction);
+}
+
+std::size_t StarList::CountDownTo(double faintest_lux) const {
+  const auto end = std::partition_point(
+      lights_.begin(), lights_.end(),
+      [faintest_lux](const StarLight& light) { return light.lux >= faintest_lux; });
+  return static_cast<std::size_t>(end - lights_.begin());
+}
 
 glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky) {
   constexpr double kHigh_sine = 0.35;  // above it refraction changes by 2" in half a minute
@@ -68,58 +143,23 @@ glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky) {
 }
 
 std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sky) {
-  const LandView axes = LandViewOf(view);
+  const StarPlane plane(view);
   // Stars just outside the picture may be raised into it by refraction.
   constexpr double kMostLift_rad = 0.1 * kRadiansPerDegree;
-  const double reach = kStarReach + 2.0 * kMostLift_rad / PixelAngle(view);
-  const auto place = [](double share, double part, int side) {
-    return 0.5 * side * (1.0 + share - part);
-  };
-  const auto place_of = [&](const glm::dvec3& towards, double margin) -> std::optional<glm::dvec2> {
-    const double along = glm::dot(towards, axes.forward);
-    if (along <= 1e-3) return std::nullopt;
-    const double x = place(glm::dot(towards, axes.right) / glm::dot(axes.right, axes.right) / along,
-                           view.part.x * view.part.z, view.width);
-    const double y = place(glm::dot(towards, axes.up) / glm::dot(axes.up, axes.up) / along,
-                           view.part.y * view.part.w, view.height);
-    const bool is_in =
-        x > -margin && x < view.width + margin && y > -margin && y < view.height + margin;
-    return is_in ? std::optional(glm::dvec2(x, y)) : std::nullopt;
-  };
-  // Most stars are farther from the axis than the farthest corner.
-  const auto widest = [&](double part, int side, const glm::dvec3& axis) {
-    return (std::abs(part) + 1.0 + 2.0 * reach / side) * glm::length(axis);
-  };
-  const double least_cosine =
-      1.0 / std::hypot(1.0, widest(view.part.x * view.part.z, view.width, axes.right),
-                       widest(view.part.y * view.part.w, view.height, axes.up));
-  const glm::dvec3 forward_then = axes.forward * sky.turn;  // turned back
+  const double reach = kStarReach + 2.0 * kMostLift_rad / plane.pixel_angle();
+  // Most stars are farther from the axis. The allowance is for rounding to float.
+  const float least_cosine = static_cast<float>(plane.LeastCosine(reach)) - 1e-6F;
+  const glm::vec3 forward_then(plane.forward() * sky.turn);  // turned back
   std::vector<StarPoint> points;
-  for (const StarLight& light : sky.lights) {
-    if (light.lux < sky.faintest_lux) break;
-    if (glm::dot(light.direction, forward_then) < least_cosine) continue;
-    if (!place_of(sky.turn * light.direction, reach)) continue;
+  const std::size_t count = sky.stars.CountDownTo(sky.faintest_lux);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (glm::dot(sky.stars.directions()[i], forward_then) < least_cosine) continue;
+    const StarLight& light = sky.stars.lights()[i];
+    if (!plane.PlaceOf(sky.turn * light.direction, reach)) continue;
     const glm::dvec3 towards = TowardsStar(light, sky);
-    const auto at = place_of(towards, kStarReach);
+    const auto at = plane.PlaceOf(towards, kStarReach);
     if (!at || glm::length(towards - sky.to_moon) < sky.moon_radius_rad) continue;
-    const double x = at->x, y = at->y, along = glm::dot(towards, axes.forward);
-    const glm::dvec2 pixel_width{2.0 * glm::length(axes.right) / view.width,
-                                 2.0 * glm::length(axes.up) / view.height};
-    const glm::dvec2 tangent{glm::dot(towards, axes.right) / glm::length(axes.right) / along,
-                             glm::dot(towards, axes.up) / glm::length(axes.up) / along};
-    const StarBell across = BellPerPixel(x, tangent.x, pixel_width.x, along),
-                   up = BellPerPixel(y, tangent.y, pixel_width.y, along);
-    glm::vec4 radiance(0.0F);
-    const auto per_sr = static_cast<float>(1.0 / PixelSolidAngle(view, along));
-    for (std::size_t band = 0; band < light.irradiance.count; ++band)
-      radiance[static_cast<glm::length_t>(band)] = per_sr * light.irradiance[band];
-    points.push_back(
-        {{std::floor(x) - kStarReach, std::floor(y) - kStarReach, std::floor(x), std::floor(y)},
-         {glm::vec3(towards), 0.0F},
-         radiance,
-         FirstFour(across),
-         FirstFour(up),
-         {across[4], up[4], 0.0F, 0.0F}});
+    points.push_back(PointOf(light, towards, *at, plane));
   }
   return points;
 }
@@ -155,11 +195,8 @@ StarPainter::StarPainter()
           [](const Request& request) {
             constexpr double kAll = std::numeric_limits<double>::infinity();
             const RefractedView bent(request.air->medium(), request.place.height_m);
-            std::vector<StarLight> lights =
-                StarLightsOver(request.place, request.now, bent, *request.colour, kAll);
-            std::stable_sort(lights.begin(), lights.end(),
-                             [](const StarLight& a, const StarLight& b) { return a.lux > b.lux; });
-            return Made{request, bent, std::move(lights)};
+            return Made{request, bent,
+                        StarLightsOver(request.place, request.now, bent, *request.colour, kAll)};
           },
           Suits) {}
 
@@ -250,7 +287,7 @@ std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const Fram
       TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made.request.now, view.now));
   const MoonDisk moon = sky.moon.value_or(MoonDisk{});
   return StarPointsIn(
-      view, {made.lights, turn, faintest_lux, moon.direction.seen, moon.radius_rad, &made.bent});
+      view, {made.stars, turn, faintest_lux, moon.direction.seen, moon.radius_rad, &made.bent});
 }
 
 std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const FrameSky& sky) const {

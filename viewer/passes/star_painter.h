@@ -39,12 +39,30 @@ struct StarPoint {
   glm::vec4 last;        // weights of the fifth column and row
 };
 
+/// Stars, the brightest first. Their directions are also stored apart from their light: a frame
+/// tests all of them for the few that are in the picture.
+class StarList {
+ public:
+  // NOLINTNEXTLINE(google-explicit-constructor): a list is what its stars are
+  StarList(std::vector<StarLight> lights);
+
+  [[nodiscard]] const std::vector<StarLight>& lights() const { return lights_; }
+  /// Directions of lights().
+  [[nodiscard]] const std::vector<glm::vec3>& directions() const { return directions_; }
+  /// Returns the number of stars that are not fainter.
+  [[nodiscard]] std::size_t CountDownTo(double faintest_lux) const;
+
+ private:
+  std::vector<StarLight> lights_;
+  std::vector<glm::vec3> directions_;
+};
+
 /// The stars above an eye.
 struct StarrySky {
-  const std::vector<StarLight>& lights;  // the brightest first
-  glm::dmat3 turn;                       // from the directions of the lights to the current ones
-  double faintest_lux;                   // fainter stars are not drawn
-  glm::dvec3 to_moon;                    // unit vector to the moon, which hides stars
+  const StarList& stars;
+  glm::dmat3 turn;      // from the directions of the lights to the current ones
+  double faintest_lux;  // fainter stars are not drawn
+  glm::dvec3 to_moon;   // unit vector to the moon, which hides stars
   double moon_radius_rad;
   const RefractedView* bent =
       nullptr;  // refraction that raised the lights; null: they have true directions
@@ -98,7 +116,7 @@ class StarPainter {
   struct Made {
     Request request;
     RefractedView bent;
-    std::vector<StarLight> lights;
+    StarList stars;
   };
 
   [[nodiscard]] bool IsNight(const FrameSky& sky, const std::shared_ptr<const SolvedAir>& air);

@@ -92,10 +92,10 @@ TEST(StarPoints, ThoseTooFaintBehindTheEyeOrBehindTheMoonAreLeftOut) {
   EXPECT_EQ(PointsOf(view, {StarAt(20.0, 150.0, 1e-8)}, 2e-8).size(), 0U);
   EXPECT_EQ(PointsOf(view, {StarAt(-20.0, 330.0, 1e-6)}).size(), 0U);
   const StarLight star = StarAt(20.0, 150.0, 1e-6);
-  EXPECT_EQ(
-      StarPointsIn(view, {{star}, glm::dmat3(1.0), 0.0, StarAt(20.1, 150.1, 1.0).direction, 0.0045})
-          .size(),
-      0U);
+  EXPECT_EQ(StarPointsIn(view, {StarList({star}), glm::dmat3(1.0), 0.0,
+                                StarAt(20.1, 150.1, 1.0).direction, 0.0045})
+                .size(),
+            0U);
 }
 
 // Tiles at the corners are seen obliquely.
