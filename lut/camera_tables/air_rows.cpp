@@ -399,6 +399,10 @@ class WayBuilder {
                             phases_.OfAerosol(nu_seen) * tables_.single_mix[1];
       const std::vector<SunlightTo> light = sunlight.Along(nus[x], nu_seen);
       for (std::size_t j = 0; j < light.size(); ++j) {
+        if (tables_.has_set) {
+          Texel(tables_.multiple_scattering, x, y, j) = light[j].single + light[j].diffuse;
+          continue;
+        }
         Texel(tables_.single, x, y, j) = Quotient(light[j].single, absorbed[j] * mix);
         Texel(tables_.multiple_scattering, x, y, j) = light[j].diffuse;
       }

@@ -21,7 +21,9 @@
 //
 // S is sunlight outside of the planet's own shadow, without the shadows of terrain: scattered once,
 // and with what is added around the sun. Where the latter would take more than half of the former,
-// away from the sun, the rest belongs to D. D is all other light scattered more than once.
+// away from the sun, the rest belongs to D. D is all other light scattered more than once. If
+// the sun has set in view (HasSetInView), D is all light, since no aureole and no shadow need S apart.
+// Shaders then read one table less.
 // air_map.glsl defines the axes.
 //
 // This header also reads the shared text air_map.glsl as C++.
@@ -121,11 +123,17 @@ struct AirEye {
   [[nodiscard]] double zenith_angle_seen_rad() const;
 };
 
+/// Returns whether the sun has set so far that neither its aureole nor shadows of terrain in the air are
+/// seen: it is 3.2 degrees below the horizon of the eye (SunShadowMapOf has shadows to 3 degrees), and
+/// its beams pass the eye's horizon higher than three scale heights of the aerosol.
+[[nodiscard]] bool HasSetInView(const Medium& medium, const AirMap& map, const AirEye& eye);
+
 /// Tables for one eye and sun. They are plain data and never modified after their construction.
 struct AirTables {
   AirTablesSize size;
   AirEye eye;
   AirMap map;
+  bool has_set;                         // HasSetInView
   std::array<glm::vec4, 3> sky_mix;     // m_R, m_M, m_0
   std::array<glm::vec4, 2> single_mix;  // a_R, a_M
   /// Extinction at altitude 0 and below [1/km]: a ray that goes on below altitude 0 is lit as at
@@ -137,7 +145,7 @@ struct AirTables {
   AirTexels sky;         // [azimuth, row]: rows above the horizon, then rows below it
   AirTexels to_space;    // [row]: transmittance of whole rays, to space or to the bare ground
   AirTexels extinction;  // [distance, row]: mean along the path [1/km]
-  AirTexels single;      // [azimuth, row, distance]
+  AirTexels single;      // [azimuth, row, distance]; 0 if has_set
   AirTexels multiple_scattering;
 };
 

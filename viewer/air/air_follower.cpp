@@ -85,6 +85,7 @@ void AirTextures::Upload(const AirTables& tables) {
   upload(kDiffuse, tables.multiple_scattering);
   const Axis phase(0, tables.phase.width, tables.phase.width);
   values_.phase_nodes = {phase.begin, phase.width, 0.0F, 0.0F};
+  is_of_set_sun_ = tables.has_set;
   const AirMap& map = tables.map;
   const AirTablesSize& size = tables.size;
   values_.shell = {map.altitude, map.ceiling, map.top, map.radius};

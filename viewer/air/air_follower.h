@@ -53,6 +53,10 @@ class AirTextures {
   /// tables requires: rows start at the current horizon, azimuths at the current sun.
   void SetView(double altitude_m, const LightDirection& light);
 
+  /// Returns whether the uploaded tables are of a sun that has set (AirTables::has_set), so that `single`
+  /// is 0.
+  [[nodiscard]] bool IsOfSetSun() const { return is_of_set_sun_; }
+
   /// Call once for each program: its samplers read from kUnits units, beginning with first_unit,
   /// its block from `binding`.
   static void Prepare(const ShaderProgram& program, int first_unit, GLuint binding);
@@ -66,6 +70,7 @@ class AirTextures {
   std::array<GlTexture, kUnits> texture_;
   GlBuffer block_;
   AirTablesBlock values_{};
+  bool is_of_set_sun_ = false;
 };
 
 /// View of one frame, as far as the air's tables depend on it.

@@ -80,6 +80,8 @@ int TexturesOf(const PictureKind& kind, const PictureStage& stage) {
   const bool has_gloss = is_ground && kind.material.HasGloss();
   int textures = (is_land ? 1 : 3) + 3 * lights;  // the air: to a point, and all of it
   textures += is_land ? 1 : lights;               // the surface; the whole sky
+  // Single scattering of a light that has set, and the phase function that the sky still needs.
+  if (stage.other_has_set) textures -= is_land ? 2 : 1;
   if (is_land && !stage.sky_by_pixel) textures += lights;
   if (is_ground) textures += kind.material.drape() != nullptr ? 2 : 1;
   if (has_gloss) textures += 1 + lights;

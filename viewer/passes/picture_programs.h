@@ -71,7 +71,7 @@ struct PictureStage {
   bool has_shade = false, has_lamps = false;
   bool two_lights = false, has_night = false;
   bool sky_by_pixel = false;   // SkyByPixel, for land only
-  bool other_has_set = false;  // the second light sends no beam to the ground (HasSetOnGround)
+  bool other_has_set = false;  // see view/lights.glsl
 
   /// Returns the stage of another pass, without properties that this pass does not have.
   [[nodiscard]] PictureStage In(Pass other) const {

@@ -447,8 +447,9 @@ PictureStage SkyPainter::StageOf(const Frame& frame) {
   stage.has_shade = HasShade(frame);
   stage.has_lamps = HasLamps();
   stage.two_lights = frame.lights().size() > 1;
-  stage.other_has_set =
-      stage.two_lights && HasSetOnGround(frame.lights().back(), ReachOf(frame.view));
+  const DistantLight& other = frame.lights().back();
+  stage.other_has_set = stage.two_lights && HasSetOnGround(other, ReachOf(frame.view)) &&
+                        scene_.air_textures(other.body).IsOfSetSun();
   stage.has_night = HasNightSkyMap() && night_sky_map_.HasAny();
   stage.sky_by_pixel = HasSkyByPixel(scene_, frame.lights());
   return programs_.Fitting(stage);

@@ -147,15 +147,15 @@ std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sk
   // Stars just outside the picture may be raised into it by refraction.
   constexpr double kMostLift_rad = 0.1 * kRadiansPerDegree;
   const double reach = kStarReach + 2.0 * kMostLift_rad / plane.pixel_angle();
-  // Most stars are farther from the axis. The allowance is for rounding to float.
-  const float least_cosine = static_cast<float>(plane.LeastCosine(reach)) - 1e-6F;
-  const glm::vec3 forward_then(plane.forward() * sky.turn);  // turned back
+  const double least_cosine = plane.LeastCosine(reach);  // most stars are farther from the axis
+  const glm::dvec3 forward_then = plane.forward() * sky.turn;  // turned back
   std::vector<StarPoint> points;
   const std::size_t count = sky.stars.CountDownTo(sky.faintest_lux);
   for (std::size_t i = 0; i < count; ++i) {
-    if (glm::dot(sky.stars.directions()[i], forward_then) < least_cosine) continue;
+    const glm::dvec3& before = sky.stars.directions()[i];
+    if (glm::dot(before, forward_then) < least_cosine) continue;
+    if (!plane.PlaceOf(sky.turn * before, reach)) continue;
     const StarLight& light = sky.stars.lights()[i];
-    if (!plane.PlaceOf(sky.turn * light.direction, reach)) continue;
     const glm::dvec3 towards = TowardsStar(light, sky);
     const auto at = plane.PlaceOf(towards, kStarReach);
     if (!at || glm::length(towards - sky.to_moon) < sky.moon_radius_rad) continue;

@@ -48,13 +48,13 @@ class StarList {
 
   [[nodiscard]] const std::vector<StarLight>& lights() const { return lights_; }
   /// Directions of lights().
-  [[nodiscard]] const std::vector<glm::vec3>& directions() const { return directions_; }
+  [[nodiscard]] const std::vector<glm::dvec3>& directions() const { return directions_; }
   /// Returns the number of stars that are not fainter.
   [[nodiscard]] std::size_t CountDownTo(double faintest_lux) const;
 
  private:
   std::vector<StarLight> lights_;
-  std::vector<glm::vec3> directions_;
+  std::vector<glm::dvec3> directions_;
 };
 
 /// The stars above an eye.

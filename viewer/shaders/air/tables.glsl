@@ -202,6 +202,7 @@ AirWay WayTo(vec3 direction, float distance_km) {
 }
 
 vec4 SingleOf(AirWay way) {
+  if (HasSet()) return vec4(0.0);
   float h2 = way.half_sine_squared;
   vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * AIR.single_of_molecules +
                 AerosolPhase(h2) * AIR.single_of_aerosol;

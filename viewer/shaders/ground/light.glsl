@@ -44,16 +44,6 @@ vec2 DiskOver(GroundPlace at, vec3 to_sun) {
                          sun.w);
 }
 
-// Returns whether the current light is known to send no beam to any ground in view. It is a
-// constant, so that compilers remove what the beam would light.
-bool HasSet() {
-#ifdef OTHER_HAS_SET
-  return OF_LIGHT(false, true);
-#else
-  return false;
-#endif
-}
-
 // Returns the sun's irradiance on a plane perpendicular to its beams, attenuated by the air, for
 // the part of the disk above the planet's horizon, above terrain and above the local plane of the
 // mesh.

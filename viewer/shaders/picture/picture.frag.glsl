@@ -5,7 +5,7 @@
 //   PASS          LAND_PASS: land and the air in front of it; SKY_PASS: sky and bare planet;
 //                 OPEN_SKY_PASS: sky above the planet; DISK_PASS: disks of sun and moon
 //   TWO_LIGHTS    defined if there is a second light, which casts no shadows (frame_sky.h)
-//   OTHER_HAS_SET  defined if that light sends no beam to the ground (HasSetOnGround)
+//   OTHER_HAS_SET  defined if that light has set (view/lights.glsl)
 //   HAS_NIGHT     light of the night sky on land, air and sky
 //   HAS_SHADE, HAS_LAMPS, HAS_MEDIA
 //   SKY_BY_PIXEL  irradiance by the sky on land is computed here (sky_by_pixel/irradiance.glsl),

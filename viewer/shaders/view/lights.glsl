@@ -12,4 +12,15 @@ bool of_other = false;
 #define OF_LIGHT(first, second) first
 #define TEXEL_OF_LIGHT(first, second, at) textureLod(first, at, 0.0)
 #endif
+
+// Returns whether the current light is known to send no beam to any ground in view, and its tables of
+// the air to be those of a set sun (HasSetInView of air_tables.h). It is a constant, so that compilers
+// remove what the beam would light.
+bool HasSet() {
+#ifdef OTHER_HAS_SET
+  return OF_LIGHT(false, true);
+#else
+  return false;
+#endif
+}
 #endif
