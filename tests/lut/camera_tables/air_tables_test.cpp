@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -215,6 +216,22 @@ TEST(AirTables, FarBelowTheHorizonTheSunLeavesNothingScatteredOnce) {
   const AirTables tables = TablesOf(tests::Earth(), EyeUnder(2.0, -18.0), AirQuality::kFirst);
   for (const glm::vec4& texel : tables.single.texel)
     ASSERT_EQ(texel, glm::vec4(0.0F)) << "up to 9 km all is in the planet's shadow";
+}
+
+bool HasSingle(const AirTables& tables) {
+  return std::any_of(tables.single.texel.begin(), tables.single.texel.end(),
+                     [](const glm::vec4& texel) { return texel != glm::vec4(0.0F); });
+}
+
+// The dust of Mars is lit up to 33 km, and its forward peak is seen long after sunset.
+TEST(AirTables, OfASunThatHasSetHaveAllLightInOneTable) {
+  const SolvedAir mars = tests::SolvedAsClearAir(MediumPreset("mars"));
+  EXPECT_TRUE(HasSingle(TablesOf(tests::Earth(), EyeUnder(2.0, -3.1), AirQuality::kLow)));
+  EXPECT_TRUE(HasSingle(TablesOf(mars, EyeUnder(2.0, -7.0), AirQuality::kLow)));
+  EXPECT_FALSE(HasSingle(TablesOf(tests::Earth(), EyeUnder(2.0, -3.3), AirQuality::kLow)));
+  EXPECT_FALSE(HasSingle(TablesOf(mars, EyeUnder(2.0, -8.2), AirQuality::kLow)));
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, -3.3), AirQuality::kHigh, {2.2e-4, 1.1e-3, 2e-5});
+  ExpectErrorsBelow(mars, EyeUnder(2.0, -8.2), AirQuality::kHigh, {5e-2, 6.2e-2, 6e-5});
 }
 
 TEST(AirTables, OfThreeWavelengthsLeaveTheFourthBandDark) {
