@@ -62,9 +62,10 @@ class AsyncValue {
     Request(wanted);
     return true;
   }
-  /// Lowers the priority of computations that begin from now on, for good. Where drawing takes all
-  /// cores, because the driver has no graphics card, a frame then does not wait for tables that are
-  /// needed some frames later. Do not call it where drawing waits for each value.
+  /// Lowers the priority of computations that begin from now on, and of the workers in their
+  /// parallel loops, for good. Where drawing takes all cores, because the driver has no graphics
+  /// card, a frame then does not wait for tables that are needed some frames later. Do not call it
+  /// where drawing waits for each value.
   void GiveWay() { gives_way_ = true; }
   /// Does nothing while a value is being computed and during a rest.
   void RequestWhenIdle(const Input& wanted) {
@@ -126,14 +127,16 @@ class AsyncValue {
   static constexpr int kStepsBelowDrawing = 10;
 
   void Run(const std::stop_token& stop) {
-    bool has_given_way = false;
+    std::optional<LowerPriorityOfWorkers> below_drawing;
     std::unique_lock lock(mutex_);
     while (has_request_.wait(lock, stop, [this] { return waiting_.has_value(); })) {
       const Input input = *std::exchange(waiting_, std::nullopt);
       is_working_ = true;
       lock.unlock();
-      if (gives_way_ && !std::exchange(has_given_way, true))
+      if (gives_way_ && !below_drawing) {
         LowerPriorityOfThread(kStepsBelowDrawing);
+        below_drawing.emplace(kStepsBelowDrawing);
+      }
       const Clock::time_point begin = Clock::now();
       std::optional<Value> made;
       std::exception_ptr failed;

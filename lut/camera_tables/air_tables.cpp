@@ -168,14 +168,15 @@ double AirEye::zenith_angle_seen_rad() const {
   return std::acos(std::clamp(mu_s, -1.0, 1.0)) - lower_for_air_rad;
 }
 
-// The lowest beam that passes the planet is d = R (1 / cos(angle) - 1) above the point of the eye's
-// horizon, where `angle` is the depth of the sun below that horizon.
+// Over the point of the eye's horizon the lowest beam has the height R (1 / cos(angle) - 1), where
+// `angle` is the depth of the sun below that horizon.
 bool HasSetInView(const Medium& medium, const AirMap& map, const AirEye& eye) {
-  constexpr double kWellBelow_rad = 3.2 * kRadiansPerDegree, kScaleHeights = 3.0;
-  const double below_rad = -std::asin(std::clamp(eye.mu_s, -1.0, 1.0)) - map.horizon_dip;
-  if (below_rad < kWellBelow_rad) return false;
+  constexpr double kNoShadows_rad = 3.2 * kRadiansPerDegree, kScaleHeights = 3.0;
+  const double lower_rad = eye.zenith_angle_seen_rad() - 0.5 * kPi;
+  if (lower_rad < kNoShadows_rad) return false;
   const double aerosol_km = kScaleHeights * medium.mie_scale_height_m / kMetresPerKilometre;
-  return std::cos(below_rad) * (map.radius + aerosol_km) < map.radius;
+  const double below_rad = lower_rad - map.horizon_dip;
+  return below_rad > 0.0 && std::cos(below_rad) * (map.radius + aerosol_km) < map.radius;
 }
 
 void RequireFourBands(const Medium& medium) {

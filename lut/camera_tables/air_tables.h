@@ -124,8 +124,8 @@ struct AirEye {
 };
 
 /// Returns whether the sun has set so far that neither its aureole nor shadows of terrain in the air are
-/// seen: it is 3.2 degrees below the horizon of the eye (SunShadowMapOf has shadows to 3 degrees), and
-/// its beams pass the eye's horizon higher than three scale heights of the aerosol.
+/// seen: it is seen lower than -3.2 degrees (SunShadowMapOf has shadows down to -3), and at the eye's
+/// horizon its beams pass higher than three scale heights of the aerosol.
 [[nodiscard]] bool HasSetInView(const Medium& medium, const AirMap& map, const AirEye& eye);
 
 /// Tables for one eye and sun. They are plain data and never modified after their construction.
