@@ -15,9 +15,8 @@ macro(alpenglow_find_dependencies)
   unset(CMAKE_FIND_PACKAGE_NAME)
 endmacro()
 
-# alpenglow::alpenglow: the public headers and all libraries. In the tree only this target has the headers, so that
-# no source of a layer can include them. In the installed package the libraries have them, too: scene.h needs
-# alpenglow::renderer, and the others need alpenglow::lut.
+# alpenglow::alpenglow: the public headers and all libraries. scene.h needs alpenglow::renderer, and the others need
+# alpenglow::lut.
 function(alpenglow_public_headers)
   list(GET ALPENGLOW_COMPONENTS -1 last)
   set(library alpenglow_${last})

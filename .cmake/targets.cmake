@@ -60,7 +60,8 @@ function(alpenglow_many_as_one target headers)
 endfunction()
 
 # alpenglow_library(<folder> [ABOVE <folder below>] SOURCES a.cpp ... API b.cpp ...): links to the library below it.
-# The sources in API implement the public headers, and only they see them. They are compiled one by one, because some public types have names of a layer's types.
+# The sources in API implement the public headers. They are compiled one by one, because some public types have names
+# of a layer's types.
 #
 # The library is static: programs and tests need what the public headers do not have. With BUILD_SHARED_LIBS, a
 # shared library of the same name is built for others: it exports what the public headers declare
@@ -69,11 +70,11 @@ function(alpenglow_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "ABOVE" "SOURCES;API")
   set(target alpenglow_${folder})
   add_library(${target} STATIC ${arg_SOURCES} ${arg_API})
-  set_source_files_properties(${arg_API} PROPERTIES
-    INCLUDE_DIRECTORIES ${PROJECT_SOURCE_DIR}/include SKIP_UNITY_BUILD_INCLUSION ON)
+  set_source_files_properties(${arg_API} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   add_library(alpenglow::${folder} ALIAS ${target})
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
   if(arg_ABOVE)
     target_link_libraries(${target} PUBLIC alpenglow_${arg_ABOVE})

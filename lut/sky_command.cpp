@@ -53,8 +53,7 @@ PanoramaSun SunFromAngles(const SkyOptions& options) {
 
 // Returns the sun at its apparent (refracted) position. The air is lit by a lower sun
 // (lower_for_air_rad), as in the images of skyseries.
-PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant,
-                        const Medium& medium) {
+PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcTime& instant, const Medium& medium) {
   const SunPosition sun = ApparentSunAt(eye, instant, GentleAirOf(medium));
   return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au, sun.angular_radius_rad,
           sun.lower_for_air_rad};
@@ -81,7 +80,7 @@ SkyJob JobFrom(const SkyOptions& options) {
   } else {
     const GeodeticPosition eye =
         PlaceFromDegrees(*options.latitude, *options.longitude, options.altitude);
-    const UtcInstant instant = ParseInstant(*options.time, options.zone);
+    const UtcTime instant = ParseInstant(*options.time, options.zone);
     job.medium = OnOsculatingSphere(job.medium, eye.latitude_rad);
     job.settings.sun = SunFromTime(eye, instant, job.medium);
     job.metadata["alpenglow.latitude_deg"] = Degrees(eye.latitude_rad);

@@ -126,7 +126,7 @@ SeriesPlan PlanOf(const SkyseriesOptions& options) {
     const auto start = times.at.empty() ? scene.time : InstantFromText(times.at.front(), day);
     if (!start && !path->UtcAt(0.0)) throw InputError("a path without utc needs a time: --at");
     const PathRate rate{times.every, times.count, options.frames_per_second};
-    plan.frames = FramesAlong(*path, rate, start.value_or(UtcInstant{}));
+    plan.frames = FramesAlong(*path, rate, start.value_or(UtcTime{}));
     plan.shutter = options.shutter;
     plan.interval_s = FrameInterval(*path, rate);
   } else {

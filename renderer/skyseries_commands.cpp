@@ -92,7 +92,7 @@ void WritePlot(const TimesOptions& options, const Scene& scene, const EventDay& 
   std::vector<PlottedMoment> moments;
   for (double at_s = 0.0; at_s <= span_s; at_s += step_s) {
     ThrowIfInterrupted();
-    const UtcInstant instant = AddSeconds(*first.around, at_s);
+    const UtcTime instant = AddSeconds(*first.around, at_s);
     const double lux = renderer.Illuminance(instant);
     moments.push_back({instant, SunAt(first.place, instant).elevation_rad / kRadiansPerDegree,
                        MoonAt(first.place, instant).elevation_rad / kRadiansPerDegree, lux,

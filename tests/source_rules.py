@@ -109,9 +109,7 @@ def foreign_namespaces(path, text):
 def foreign_includes(path, text):
     """What a public header includes that strangers do not have."""
     for included in re.findall(r"^\s*#\s*include\s*(\S+)", text, re.MULTILINE):
-        # Private headers include errors.h from the top of the tree, where <alpenglow/...> is not found.
-        is_beside = path == "include/alpenglow/errors.h" and included == '"export.h"'
-        if not is_beside and not re.fullmatch(r"<(alpenglow/\w+\.h|\w+)>", included):
+        if not re.fullmatch(r"<(alpenglow/\w+\.h|\w+)>", included):
             yield f"{path}: a public header includes {included}"
 
 

@@ -34,7 +34,7 @@ QualityChoice QualityOf(const FlightSessionSettings& settings) {
 
 }  // namespace
 
-FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
+FlightSession::FlightSession(const Scene& scene, const UtcTime& start,
                              const FlightSessionSettings& settings)
     : start_{Drawable(scene), settings},
       controller_(EyeOfScene(scene), EllipsoidOf(scene.medium), start,

@@ -42,7 +42,7 @@ struct FlightStart {
 /// flight can continue while the picture is made.
 struct FlightMoment {
   CameraPose eye;
-  UtcInstant now;
+  UtcTime now;
   Standpoint::State standpoint;
   SceneChanges scene;
   QualityRule quality;
@@ -55,7 +55,7 @@ class FlightSession {
   /// Solves the atmosphere and starts to read the land. An OpenGL context must be current here and
   /// in all later calls. Throws InputError for files of the scene that cannot be read and for a
   /// medium of more than four wavelengths.
-  FlightSession(const Scene& scene, const UtcInstant& start, const FlightSessionSettings& settings);
+  FlightSession(const Scene& scene, const UtcTime& start, const FlightSessionSettings& settings);
   FlightSession(const FlightSession&) = delete;
   FlightSession& operator=(const FlightSession&) = delete;
 
@@ -84,7 +84,7 @@ class FlightSession {
   [[nodiscard]] std::string Explain(const ImageSize& size);
 
   [[nodiscard]] const CameraPose& eye() const { return controller_.pilot().eye(); }
-  [[nodiscard]] const UtcInstant& now() const { return controller_.clock().now(); }
+  [[nodiscard]] const UtcTime& now() const { return controller_.clock().now(); }
   /// Returns the name of the time zone at the eye.
   [[nodiscard]] std::string zone() const { return edits_.ZoneAt(eye().place); }
   /// Returns the view of a written picture. Its field of view is that of the scene or path, up to

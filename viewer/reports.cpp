@@ -222,7 +222,7 @@ std::string Benchmark::WorstText() const {
       worst_at_s_);
 }
 
-ReplayFrame BenchmarkFlight(const CameraPose& start, const UtcInstant& begin, double elapsed_s) {
+ReplayFrame BenchmarkFlight(const CameraPose& start, const UtcTime& begin, double elapsed_s) {
   constexpr double kSpeed_m_per_s = 250.0, kRadius_m = 5000.0;
   const double turned = kSpeed_m_per_s * elapsed_s / kRadius_m;
   const double ahead = kRadius_m * std::sin(turned), right = kRadius_m * (1.0 - std::cos(turned));

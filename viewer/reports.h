@@ -79,7 +79,7 @@ class Benchmark {
 
 /// Returns a frame of the scripted flight: circles of 5 km radius to the right, at 250 m/s and at
 /// the initial height.
-[[nodiscard]] ReplayFrame BenchmarkFlight(const CameraPose& start, const UtcInstant& begin,
+[[nodiscard]] ReplayFrame BenchmarkFlight(const CameraPose& start, const UtcTime& begin,
                                           double elapsed_s);
 
 /// Returns a text table of errors: of the picture against the renderer's, and of each shortcut

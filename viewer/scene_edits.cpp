@@ -152,7 +152,7 @@ std::string SceneEdits::ZoneAt(const GeodeticPosition& place) const {
   return ZoneNear(place, scene_.zone, scene_.place);
 }
 
-Scene SceneEdits::SeenBy(const CameraPose& eye, const UtcInstant& now) const {
+Scene SceneEdits::SeenBy(const CameraPose& eye, const UtcTime& now) const {
   Scene seen = scene_;
   seen.place = eye.place;
   seen.place.height_m = 0.0;
@@ -165,7 +165,7 @@ Scene SceneEdits::SeenBy(const CameraPose& eye, const UtcInstant& now) const {
   return seen;
 }
 
-ReferenceScene SceneEdits::ForRenderer(const CameraPose& eye, const UtcInstant& now) const {
+ReferenceScene SceneEdits::ForRenderer(const CameraPose& eye, const UtcTime& now) const {
   ReferenceScene scene{SeenBy(eye, now), nullptr};
   if (has_one_model_) return scene;
   scene.scene.terrain.kind = TerrainSource::Kind::kNone;

@@ -68,13 +68,13 @@ class SceneEdits {
   [[nodiscard]] int version() const { return version_; }
 
   /// Returns the scene as seen by an eye.
-  [[nodiscard]] Scene SeenBy(const CameraPose& eye, const UtcInstant& now) const;
+  [[nodiscard]] Scene SeenBy(const CameraPose& eye, const UtcTime& now) const;
   /// Returns hashes of the files of the scene, which were read when the scene was loaded. Throws
   /// InputError if one could not be read.
   [[nodiscard]] const FileHashes& file_hashes() const { return file_hashes_.get(); }
   /// Returns the scene for the renderer. A scene file cannot describe land of several elevation
   /// models; for those it holds the land that is loaded around the eye.
-  [[nodiscard]] ReferenceScene ForRenderer(const CameraPose& eye, const UtcInstant& now) const;
+  [[nodiscard]] ReferenceScene ForRenderer(const CameraPose& eye, const UtcTime& now) const;
   /// Returns the name of the time zone at a place.
   [[nodiscard]] std::string ZoneAt(const GeodeticPosition& place) const;
   /// Returns new notes about land and places. Each note is returned once.

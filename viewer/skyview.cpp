@@ -79,7 +79,7 @@ EyePlacement PlacementOf(const SkyviewOptions& options) {
   return placement;
 }
 
-UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
+UtcTime StartOf(const SkyviewOptions& options, const Scene& scene) {
   if (!options.time && scene.time) return *scene.time;
   GeodeticPosition place = options.place ? PlaceNamed(*options.place).place
                                          : Placed({scene.place}, PlacementOf(options)).place;
@@ -182,7 +182,7 @@ void RunBenchmark(double seconds, FlightSession& flight, const ImageSize& size, 
                                    size.height};
   flight.WaitUntilReady(size);
   const CameraPose start = flight.eye();
-  const UtcInstant begin = flight.now();
+  const UtcTime begin = flight.now();
   Benchmark benchmark(seconds);
   flight.frames().SetTimer(&benchmark.timer());
   for (double before_s = 0.0; benchmark.NextFrame(); before_s = benchmark.elapsed_s()) {
@@ -301,7 +301,7 @@ int Run(const SkyviewOptions& options) {
   std::optional<Track> flown;  // --path, if it is a track
   if (options.replay && IsTrack(*options.replay)) flown = ReadTrackWithNote(*options.replay);
   const Scene scene = SceneOf(options, flown);
-  const UtcInstant start = StartOf(options, scene);
+  const UtcTime start = StartOf(options, scene);
   std::optional<CameraPath> path;
   if (options.replay && !flown) path = ReadFlight(*options.replay);
   const bool has_land = scene.terrain.kind != TerrainSource::Kind::kNone;

@@ -127,7 +127,7 @@ HudModel ViewerApp::Model() const {
 void ViewerApp::WantStrip() {
   if (!hud_.IsOpen(HudPanel::kPlaceAndTime)) return;
   const std::shared_ptr<const SolvedAir> air = flight_.frames().air();
-  const UtcInstant begin = AddSeconds(
+  const UtcTime begin = AddSeconds(
       flight_.now(), -kSecondsPerDay * LocalTimeAt(flight_.now(), flight_.zone()).day_fraction);
   strip_.RequestIfNeeded(
       {std::shared_ptr<const MultipleScattering>(air, &air->multiple_scattering()),

@@ -15,12 +15,9 @@ namespace alpenglow {
 /// Returns the place. Throws InputError as PlaceFromDegrees does.
 [[nodiscard]] atmosphere::GeodeticPosition GeodeticFromPlace(const Place& place);
 
-/// Throws InputError for a year outside [kFirstYear, kLastYear].
-[[nodiscard]] atmosphere::UtcInstant InstantFromTime(UtcTime time);
-
-/// Returns the time, rounded to microseconds. A leap second becomes the first second of the next
-/// day.
-[[nodiscard]] UtcTime TimeFromInstant(const atmosphere::UtcInstant& instant);
+/// Returns the time. Throws InputError for a year outside [kFirstYear, kLastYear] and for a second
+/// that its day does not have.
+const UtcTime& RequireValid(const UtcTime& time);
 
 /// Throws InputError that names the member out of range.
 void RequireValid(const SunInSky& sun);

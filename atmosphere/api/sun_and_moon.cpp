@@ -24,8 +24,6 @@ using atmosphere::RequireInRange;
 
 namespace {
 
-constexpr int kUnixEpochModifiedJulianDay = 40587;
-
 Direction Towards(double elevation_deg, double azimuth_deg) {
   const glm::dvec3 unit = atmosphere::DirectionFromAngles(elevation_deg * kRadiansPerDegree,
                                                           azimuth_deg * kRadiansPerDegree)
@@ -65,31 +63,6 @@ atmosphere::GeodeticPosition GeodeticFromPlace(const Place& place) {
   return atmosphere::PlaceFromDegrees(place.latitude_deg, place.longitude_deg, place.height_m);
 }
 
-atmosphere::UtcInstant InstantFromTime(UtcTime time) {
-  const auto day = std::chrono::floor<std::chrono::days>(time);
-  constexpr auto kFirst = std::chrono::year(atmosphere::kFirstYear) / std::chrono::January / 1;
-  constexpr auto kLast = std::chrono::year(atmosphere::kLastYear) / std::chrono::December / 31;
-  if (day < std::chrono::sys_days(kFirst) || day > std::chrono::sys_days(kLast)) {
-    throw InputError(
-        fmt::format("time lies {} days after 1970-01-01; its year must lie in [{}, {}]",
-                    day.time_since_epoch().count(), atmosphere::kFirstYear, atmosphere::kLastYear));
-  }
-  return {kUnixEpochModifiedJulianDay + static_cast<int>(day.time_since_epoch().count()),
-          std::chrono::duration<double>(time - day).count()};
-}
-
-UtcTime TimeFromInstant(const atmosphere::UtcInstant& instant) {
-  const std::chrono::days day(instant.modified_julian_day - kUnixEpochModifiedJulianDay);
-  return UtcTime(day) + std::chrono::microseconds(std::llround(1e6 * instant.second_of_day));
-}
-
-UtcTime TimeFromText(std::string_view text, const std::string& zone) {
-  return TimeFromInstant(
-      atmosphere::ParseInstant(text, zone.empty() ? std::nullopt : std::optional(zone)));
-}
-
-std::string TextFromTime(UtcTime time) { return atmosphere::FormatUtc(InstantFromTime(time)); }
-
 Direction SunInSky::ToSun() const {
   RequireValid(*this);
   return Towards(elevation_deg, azimuth_deg);
@@ -104,17 +77,17 @@ Direction SunInSky::ToSunForAir() const {
   return Towards(ElevationForAir_deg(*this), azimuth_deg);
 }
 
-SunInSky SunAt(const Place& place, UtcTime time, const Atmosphere& atmosphere) {
+SunInSky SunAt(const Place& place, const UtcTime& time, const Atmosphere& atmosphere) {
   const atmosphere::SunPosition sun = atmosphere::ApparentSunAt(
-      GeodeticFromPlace(place), InstantFromTime(time), AirAt(atmosphere, place));
+      GeodeticFromPlace(place), RequireValid(time), AirAt(atmosphere, place));
   return {sun.elevation_rad / kRadiansPerDegree, sun.azimuth_rad / kRadiansPerDegree,
           sun.distance_au, sun.angular_radius_rad / kRadiansPerDegree,
           sun.lower_for_air_rad / kRadiansPerDegree};
 }
 
-MoonInSky MoonAt(const Place& place, UtcTime time, const Atmosphere& atmosphere) {
+MoonInSky MoonAt(const Place& place, const UtcTime& time, const Atmosphere& atmosphere) {
   const atmosphere::MoonPosition moon = atmosphere::ApparentMoonAt(
-      GeodeticFromPlace(place), InstantFromTime(time), AirAt(atmosphere, place));
+      GeodeticFromPlace(place), RequireValid(time), AirAt(atmosphere, place));
   return {moon.elevation_rad / kRadiansPerDegree,
           moon.azimuth_rad / kRadiansPerDegree,
           moon.distance_m,
@@ -123,17 +96,15 @@ MoonInSky MoonAt(const Place& place, UtcTime time, const Atmosphere& atmosphere)
           moon.IlluminatedFraction()};
 }
 
-std::optional<UtcTime> SunEventTime(std::string_view event, const Place& place, UtcTime around) {
+std::optional<UtcTime> SunEventTime(std::string_view event, const Place& place,
+                                    const UtcTime& around) {
   const std::optional<atmosphere::SunEvent> known = atmosphere::SunEventFromName(event);
   if (!known) {
     throw InputError("\"" + std::string(event) +
                      "\" is no event of the sun; use noon, sunrise, sunset, or civil-, nautical- "
                      "or astronomical-dawn or -dusk");
   }
-  const std::optional<atmosphere::UtcInstant> instant =
-      atmosphere::FindSunEvent(*known, GeodeticFromPlace(place), InstantFromTime(around));
-  if (!instant) return std::nullopt;
-  return TimeFromInstant(*instant);
+  return atmosphere::FindSunEvent(*known, GeodeticFromPlace(place), RequireValid(around));
 }
 
 }  // namespace alpenglow

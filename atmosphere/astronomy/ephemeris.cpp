@@ -245,12 +245,12 @@ double MagnitudeOf(const Planet& planet, const BodyState& body, const EarthAndSu
 
 }  // namespace
 
-TerrestrialTime TerrestrialTimeAt(const UtcInstant& instant, double delta_t_s) {
+TerrestrialTime TerrestrialTimeAt(const UtcTime& instant, double delta_t_s) {
   return {kModifiedJulianEpoch + instant.modified_julian_day,
           (instant.second_of_day + delta_t_s) / kSecondsPerDay};
 }
 
-glm::dmat3 EcefFromGcrs(const UtcInstant& instant, double delta_t_s) {
+glm::dmat3 EcefFromGcrs(const UtcTime& instant, double delta_t_s) {
   const EarthAndAxes earth = EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s));
   const double angle_rad = eraEra00(kModifiedJulianEpoch + instant.modified_julian_day,
                                     instant.second_of_day / kSecondsPerDay) -
@@ -260,7 +260,7 @@ glm::dmat3 EcefFromGcrs(const UtcInstant& instant, double delta_t_s) {
 }
 
 // TDB - TT, below 2 ms, moves the sun by 1e-4 arcseconds.
-EarthAndSun EarthAndSunAt(const UtcInstant& instant, double delta_t_s) {
+EarthAndSun EarthAndSunAt(const UtcTime& instant, double delta_t_s) {
   return EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s)).bodies;
 }
 
@@ -288,7 +288,7 @@ BodyState MoonFromEarth(const TerrestrialTime& time) {
   return {position, (PositionAt(centuries(kMinute)) - position) / kMinute};
 }
 
-std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place, const UtcInstant& instant) {
+std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place, const UtcTime& instant) {
   const double delta_t_s = DeltaT(instant);
   const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
   const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, delta_t_s);

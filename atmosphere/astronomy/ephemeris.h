@@ -47,11 +47,11 @@ struct EarthAndSun {
 /// Returns the states of earth and sun. Outside 1900-2100 the error is no longer bounded by 0.02
 /// arcseconds.
 /// @param delta_t_s  TT - UT1.
-[[nodiscard]] EarthAndSun EarthAndSunAt(const UtcInstant& instant, double delta_t_s);
+[[nodiscard]] EarthAndSun EarthAndSunAt(const UtcTime& instant, double delta_t_s);
 
 /// Returns the rotation from GCRS via the true equator and equinox to ITRS, which equals WGS84
 /// within decimetres.
-[[nodiscard]] glm::dmat3 EcefFromGcrs(const UtcInstant& instant, double delta_t_s);
+[[nodiscard]] glm::dmat3 EcefFromGcrs(const UtcTime& instant, double delta_t_s);
 
 /// Apparent place of a body seen from a place, without refraction.
 struct ApparentPlace {
@@ -70,7 +70,7 @@ struct ApparentPlace {
 struct TerrestrialTime {
   double day, part;
 };
-[[nodiscard]] TerrestrialTime TerrestrialTimeAt(const UtcInstant& instant, double delta_t_s);
+[[nodiscard]] TerrestrialTime TerrestrialTimeAt(const UtcTime& instant, double delta_t_s);
 
 /// Returns the geometric state of the moon from the centre of the earth, in the axes of the GCRS.
 /// 1950-2100: within 0.6 arcseconds of direction and 3 km of distance of the sum of all terms
@@ -88,6 +88,6 @@ struct PointLight {
 /// Returns Mercury, Venus, Mars, Jupiter, Saturn, seen from a place. Errors of magnitudes: 0.2, for
 /// Saturn 0.3.
 [[nodiscard]] std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place,
-                                                  const UtcInstant& instant);
+                                                  const UtcTime& instant);
 
 }  // namespace alpenglow::atmosphere

@@ -67,7 +67,7 @@ double MoonReflectance(double phase_angle_rad, double wavelength_nm) {
 namespace {
 
 // Returns the geometric state of the moon; bodies move about the barycentre.
-BodyState MoonOf(const BodyState& earth, const UtcInstant& instant, double delta_t_s) {
+BodyState MoonOf(const BodyState& earth, const UtcTime& instant, double delta_t_s) {
   const BodyState moon = TabulatedMoonFromEarth(TerrestrialTimeAt(instant, delta_t_s));
   return {earth.position_au + moon.position_au,
           earth.velocity_au_per_day + moon.velocity_au_per_day};
@@ -89,7 +89,7 @@ constexpr int kSteps = static_cast<int>(30.0 * kSecondsPerDay / kStep_s);
 /// Elevation of the upper limb above the sea horizon [rad], some seconds after an instant.
 class LimbOverHorizon {
  public:
-  LimbOverHorizon(const GeodeticPosition& place, const UtcInstant& from)
+  LimbOverHorizon(const GeodeticPosition& place, const UtcTime& from)
       : place_(place),
         from_(from),
         horizon_rad_(SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad))
@@ -102,7 +102,7 @@ class LimbOverHorizon {
 
  private:
   GeodeticPosition place_;
-  UtcInstant from_;
+  UtcTime from_;
   double horizon_rad_;
 };
 
@@ -132,8 +132,8 @@ std::vector<Sample> SamplesOfStep(const LimbOverHorizon& limb, const Sample& bef
   return {here, {turn_s, limb(turn_s)}, next};
 }
 
-std::optional<UtcInstant> NextChange(const GeodeticPosition& place, const UtcInstant& after,
-                                     bool rising) {
+std::optional<UtcTime> NextChange(const GeodeticPosition& place, const UtcTime& after,
+                                  bool rising) {
   const LimbOverHorizon limb(place, after);
   Sample before{-kStep_s, limb(-kStep_s)}, here{0.0, limb(0.0)};
   for (int step = 0; step < kSteps; ++step) {
@@ -153,11 +153,11 @@ std::optional<UtcInstant> NextChange(const GeodeticPosition& place, const UtcIns
 
 double MoonPosition::IlluminatedFraction() const { return 0.5 * (1.0 + std::cos(phase_angle_rad)); }
 
-MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant) {
+MoonPosition MoonAt(const GeodeticPosition& place, const UtcTime& instant) {
   return MoonAt(place, instant, DeltaT(instant));
 }
 
-MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant, double delta_t_s) {
+MoonPosition MoonAt(const GeodeticPosition& place, const UtcTime& instant, double delta_t_s) {
   const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
   const BodyState moon = MoonOf(bodies.earth, instant, delta_t_s);
   const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, delta_t_s);
@@ -180,11 +180,11 @@ MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant, do
           PositionAngle(to_sun.xyz, seen.direction.xyz)};
 }
 
-MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant) {
+MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcTime& instant) {
   return ApparentMoonAt(place, instant, AlmanacAir());
 }
 
-MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant,
+MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcTime& instant,
                             const BendingAir& air) {
   return Refracted(MoonAt(place, instant), place.height_m, air);
 }
@@ -195,15 +195,15 @@ LightDirection DirectionOf(const MoonPosition& apparent) {
           DirectionFromAngles(for_air_rad, apparent.azimuth_rad).xyz};
 }
 
-std::optional<UtcInstant> NextMoonrise(const GeodeticPosition& place, const UtcInstant& after) {
+std::optional<UtcTime> NextMoonrise(const GeodeticPosition& place, const UtcTime& after) {
   return NextChange(place, after, true);
 }
 
-std::optional<UtcInstant> NextMoonset(const GeodeticPosition& place, const UtcInstant& after) {
+std::optional<UtcTime> NextMoonset(const GeodeticPosition& place, const UtcTime& after) {
   return NextChange(place, after, false);
 }
 
-UtcInstant NextMoonTransit(const GeodeticPosition& place, const UtcInstant& after) {
+UtcTime NextMoonTransit(const GeodeticPosition& place, const UtcTime& after) {
   const auto hour_angle = [&](double after_s) {
     const glm::dvec3 moon = MoonAt(place, AddSeconds(after, after_s)).direction.xyz;
     return WrappedLongitude(place.longitude_rad - std::atan2(moon.y, moon.x));
@@ -228,8 +228,8 @@ std::optional<MoonEvent> MoonEventFromName(std::string_view name) {
   return kNames.Find(name);
 }
 
-std::optional<UtcInstant> NextMoonEvent(MoonEvent event, const GeodeticPosition& place,
-                                        const UtcInstant& after) {
+std::optional<UtcTime> NextMoonEvent(MoonEvent event, const GeodeticPosition& place,
+                                     const UtcTime& after) {
   switch (event) {
     case MoonEvent::kMoonrise:
       return NextMoonrise(place, after);

@@ -119,7 +119,7 @@ Angles AnglesOf(const glm::dvec3& unit) {
 
 }  // namespace
 
-std::vector<PointLight> StarsAt(const UtcInstant& instant, double faintest) {
+std::vector<PointLight> StarsAt(const UtcTime& instant, double faintest) {
   constexpr double kModifiedDayOf2000 = 51544.5, kDaysOfYear = 365.25;
   const double years =
       (instant.modified_julian_day + instant.second_of_day / kSecondsPerDay - kModifiedDayOf2000) /
@@ -186,7 +186,7 @@ double Starlight(double longitude_rad, double latitude_rad) {
   return (disk + bulge) * dust;
 }
 
-NightSky::NightSky(const GeodeticPosition& place, const UtcInstant& instant) {
+NightSky::NightSky(const GeodeticPosition& place, const UtcTime& instant) {
   const double delta_t_s = DeltaT(instant);
   const LocalFrame frame(kWgs84, place);
   const auto axis = [&](const glm::dvec3& enu) { return frame.EcefFromEnu(Vector<Enu>{enu}).xyz; };

@@ -41,7 +41,7 @@ namespace alpenglow::atmosphere {
 
 /// Returns the stars up to a magnitude, brightest first, without refraction. The catalogue is read
 /// on the first call.
-[[nodiscard]] std::vector<PointLight> StarsAt(const UtcInstant& instant, double faintest = 6.0);
+[[nodiscard]] std::vector<PointLight> StarsAt(const UtcTime& instant, double faintest = 6.0);
 
 /// Returns the illuminance outside the air [lux], on a plane that faces the light.
 [[nodiscard]] double IlluminanceOf(double magnitude);
@@ -93,7 +93,7 @@ struct NightRadiance {
 /// Orientation of the sky over a place. Its frame can be rotated together with that of the picture.
 class NightSky {
  public:
-  NightSky(const GeodeticPosition& place, const UtcInstant& instant);
+  NightSky(const GeodeticPosition& place, const UtcTime& instant);
 
   /// @param frame_from_enu  a rotation.
   [[nodiscard]] NightSky InFrame(const glm::dmat3& frame_from_enu) const;

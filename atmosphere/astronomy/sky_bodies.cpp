@@ -52,7 +52,7 @@ double LightBetween(double low, double high, double wavelength_nm) {
 /// Sun and moon at a place, some seconds after an instant.
 class Pair {
  public:
-  Pair(const GeodeticPosition& place, const UtcInstant& from) : place_(place), from_(from) {}
+  Pair(const GeodeticPosition& place, const UtcTime& from) : place_(place), from_(from) {}
 
   /// Returns the squared distance of the centres on the unit sphere.
   [[nodiscard]] double Chord2(double after_s) const {
@@ -84,7 +84,7 @@ class Pair {
   }
 
   GeodeticPosition place_;
-  UtcInstant from_;
+  UtcTime from_;
 };
 
 /// Returns the time of the least distance of the centres, if it is in [0, end).
@@ -141,7 +141,7 @@ double UncoveredLight(const EclipsedDisk& disk, double wavelength_nm) {
   return std::min(light, 1.0);
 }
 
-SolarEclipse::Moment EclipseAt(const GeodeticPosition& place, const UtcInstant& instant) {
+SolarEclipse::Moment EclipseAt(const GeodeticPosition& place, const UtcTime& instant) {
   const SunPosition sun = SunAt(place, instant);
   const double horizon_rad =
       SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad))
@@ -150,7 +150,7 @@ SolarEclipse::Moment EclipseAt(const GeodeticPosition& place, const UtcInstant& 
           sun.elevation_rad + sun.angular_radius_rad - horizon_rad};
 }
 
-std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place, const UtcInstant& from,
+std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place, const UtcTime& from,
                                              double within_s) {
   const Pair pair(place, from);
   // The moon moves away from the sun by 13 degrees a day, and parallax adds one degree.
@@ -181,7 +181,7 @@ std::optional<EclipseEvent> EclipseEventFromName(std::string_view name) {
   return kNames.Find(name);
 }
 
-std::optional<UtcInstant> InstantOf(EclipseEvent event, const SolarEclipse& eclipse) {
+std::optional<UtcTime> InstantOf(EclipseEvent event, const SolarEclipse& eclipse) {
   const bool has_inner = eclipse.inner.has_value();
   switch (event) {
     case EclipseEvent::kFirstContact:
@@ -230,7 +230,7 @@ MoonDisk SkyBodies::ApparentMoonDisk(const BendingAir& air) const {
   return MoonDiskOf(seen, DirectionOf(seen), frame.EnuFromEcef(seen.to_sun).xyz, sun.distance_au);
 }
 
-SkyBodies SkyBodiesAt(const GeodeticPosition& place, const UtcInstant& instant) {
+SkyBodies SkyBodiesAt(const GeodeticPosition& place, const UtcTime& instant) {
   return {place, instant, SunAt(place, instant), MoonAt(place, instant)};
 }
 

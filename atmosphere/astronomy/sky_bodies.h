@@ -51,7 +51,7 @@ struct EclipsedDisk {
 /// An eclipse of the sun at a place, whether or not the sun is up there.
 struct SolarEclipse {
   struct Moment {
-    UtcInstant instant;
+    UtcTime instant;
     EclipsedDisk disk;
     double limb_over_horizon_rad;  // of the sun's upper limb, refracted, over the sea horizon
 
@@ -66,8 +66,7 @@ struct SolarEclipse {
 };
 
 /// Returns the state of sun and moon at one instant.
-[[nodiscard]] SolarEclipse::Moment EclipseAt(const GeodeticPosition& place,
-                                             const UtcInstant& instant);
+[[nodiscard]] SolarEclipse::Moment EclipseAt(const GeodeticPosition& place, const UtcTime& instant);
 
 /// Returns the eclipse at a place whose maximum, the least distance of the centres, is within a
 /// number of seconds from an instant. Contacts are defined as in almanacs: the sun's radius is
@@ -78,7 +77,7 @@ struct SolarEclipse {
 /// delta-T shifts them by up to a second.
 /// @param within_s  > 0, 2 days at most.
 [[nodiscard]] std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place,
-                                                           const UtcInstant& from, double within_s);
+                                                           const UtcTime& from, double within_s);
 
 /// Events of an eclipse of the sun.
 enum class EclipseEvent { kFirstContact, kSecondContact, kMaximum, kThirdContact, kLastContact };
@@ -88,7 +87,7 @@ enum class EclipseEvent { kFirstContact, kSecondContact, kMaximum, kThirdContact
 [[nodiscard]] std::optional<EclipseEvent> EclipseEventFromName(std::string_view name);
 
 /// Returns the instant of an event; std::nullopt for the inner contacts of a partial eclipse.
-[[nodiscard]] std::optional<UtcInstant> InstantOf(EclipseEvent event, const SolarEclipse& eclipse);
+[[nodiscard]] std::optional<UtcTime> InstantOf(EclipseEvent event, const SolarEclipse& eclipse);
 
 /// Returns the sun with refraction by any air that bends rays gently (ApparentSunAt).
 /// @param sun  without refraction. @param height_m  of the eye above the ellipsoid.
@@ -100,7 +99,7 @@ enum class EclipseEvent { kFirstContact, kSecondContact, kMaximum, kThirdContact
 /// Sun and moon without refraction.
 struct SkyBodies {
   GeodeticPosition place;
-  UtcInstant instant;
+  UtcTime instant;
   SunPosition sun;
   MoonPosition moon;
 
@@ -116,6 +115,6 @@ struct SkyBodies {
   [[nodiscard]] MoonDisk ApparentMoonDisk(const BendingAir& air) const;
 };
 
-[[nodiscard]] SkyBodies SkyBodiesAt(const GeodeticPosition& place, const UtcInstant& instant);
+[[nodiscard]] SkyBodies SkyBodiesAt(const GeodeticPosition& place, const UtcTime& instant);
 
 }  // namespace alpenglow::atmosphere

@@ -20,11 +20,11 @@
 
 namespace alpenglow::atmosphere {
 
-SunPosition SunAt(const GeodeticPosition& place, const UtcInstant& instant) {
+SunPosition SunAt(const GeodeticPosition& place, const UtcTime& instant) {
   return SunAt(place, instant, DeltaT(instant));
 }
 
-SunPosition SunAt(const GeodeticPosition& place, const UtcInstant& instant, double delta_t_s) {
+SunPosition SunAt(const GeodeticPosition& place, const UtcTime& instant, double delta_t_s) {
   const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
   const ApparentPlace sun = SeenFrom(place, EcefFromGcrs(instant, delta_t_s), bodies, bodies.sun);
   return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au,
@@ -38,11 +38,11 @@ SunPosition SunForAir(const SunPosition& seen) {
   return sun;
 }
 
-SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant) {
+SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcTime& instant) {
   return ApparentSunAt(place, instant, AlmanacAir());
 }
 
-SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant,
+SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcTime& instant,
                           const BendingAir& air) {
   return Refracted(SunAt(place, instant), place.height_m, air);
 }
@@ -149,8 +149,7 @@ Crossing CrossingOf(SunEvent event, const GeodeticPosition& place) {
 }
 
 /// Returns the elevation of the sun above the elevation of a crossing [rad].
-double HeightOver(const Crossing& crossing, const GeodeticPosition& place,
-                  const UtcInstant& instant) {
+double HeightOver(const Crossing& crossing, const GeodeticPosition& place, const UtcTime& instant) {
   const SunPosition sun = SunAt(place, instant);
   const double limb_rad = crossing.of_upper_limb ? sun.angular_radius_rad : 0.0;
   return sun.elevation_rad + limb_rad - crossing.true_elevation_rad;
@@ -225,7 +224,7 @@ std::optional<double> FirstChange(const Function& f, bool rising) {
 }
 
 /// The sun's hour angle passes 0 within 17 minutes of mean noon (equation of time).
-double NoonOf(const GeodeticPosition& place, const UtcInstant& midnight) {
+double NoonOf(const GeodeticPosition& place, const UtcTime& midnight) {
   const auto hour_angle = [&](double time_s) {
     const glm::dvec3 sun = SunAt(place, AddSeconds(midnight, time_s)).direction.xyz;
     return WrappedLongitude(place.longitude_rad - std::atan2(sun.y, sun.x));
@@ -239,11 +238,11 @@ double NoonOf(const GeodeticPosition& place, const UtcInstant& midnight) {
 
 std::optional<SunEvent> SunEventFromName(std::string_view name) { return kSunEvents.Find(name); }
 
-std::optional<UtcInstant> FindSunEvent(SunEvent event, const GeodeticPosition& place,
-                                       const UtcInstant& around) {
+std::optional<UtcTime> FindSunEvent(SunEvent event, const GeodeticPosition& place,
+                                    const UtcTime& around) {
   const GeodeticPosition wrapped{place.latitude_rad, WrappedLongitude(place.longitude_rad),
                                  place.height_m};
-  const UtcInstant midnight = MeanSolarMidnight(wrapped.longitude_rad, around);
+  const UtcTime midnight = MeanSolarMidnight(wrapped.longitude_rad, around);
   if (event == SunEvent::kNoon) return AddSeconds(midnight, NoonOf(wrapped, midnight));
   const Crossing crossing = CrossingOf(event, wrapped);
   const auto height_over_crossing = [&](double time_s) {
@@ -254,7 +253,7 @@ std::optional<UtcInstant> FindSunEvent(SunEvent event, const GeodeticPosition& p
   return AddSeconds(midnight, *time_s);
 }
 
-bool IsAboveEvent(SunEvent event, const GeodeticPosition& place, const UtcInstant& instant) {
+bool IsAboveEvent(SunEvent event, const GeodeticPosition& place, const UtcTime& instant) {
   if (event == SunEvent::kNoon) throw InternalError("noon is not at a height of the sun");
   return HeightOver(CrossingOf(event, place), place, instant) >= 0.0;
 }

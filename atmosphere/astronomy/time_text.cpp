@@ -146,7 +146,7 @@ void RefuseOtherYears(std::string_view text, std::string_view what) {
                                    : fmt::format("known are {}", fmt::join(kEventNames, ", "))));
 }
 
-const UtcInstant& AroundOf(std::string_view text, const EventDay& day) {
+const UtcTime& AroundOf(std::string_view text, const EventDay& day) {
   if (!day.around) throw InputError(fmt::format("time \"{}\": of which day? give a date", text));
   return *day.around;
 }
@@ -164,7 +164,7 @@ std::optional<std::size_t> EndOfDay(std::string_view text) {
 
 /// Returns the middle between two noons. The sun is lowest then, within the half minute by which
 /// noons are unevenly spaced.
-std::optional<UtcInstant> FindMidnight(const GeodeticPosition& place, const UtcInstant& around) {
+std::optional<UtcTime> FindMidnight(const GeodeticPosition& place, const UtcTime& around) {
   const auto noon = FindSunEvent(SunEvent::kNoon, place, around);
   const auto next = FindSunEvent(SunEvent::kNoon, place, AddSeconds(around, kSecondsPerDay));
   return AddSeconds(noon.value(), 0.5 * SecondsBetween(noon.value(), next.value()));
@@ -172,22 +172,21 @@ std::optional<UtcInstant> FindMidnight(const GeodeticPosition& place, const UtcI
 
 /// Returns the event that falls on the date of `around` by the clocks of the place. Each event
 /// comes 50 minutes later from day to day, so once a month a date has none.
-std::optional<UtcInstant> FindMoonEvent(MoonEvent event, const UtcInstant& around,
-                                        const EventDay& day) {
+std::optional<UtcTime> FindMoonEvent(MoonEvent event, const UtcTime& around, const EventDay& day) {
   constexpr double kBefore_s = 14.0 * 3600.0;  // clock changes move the begin of a date by hours
   const std::string date = DateAt(around, day);
-  UtcInstant after = AddSeconds(DayFromText(date, day), -kBefore_s);
+  UtcTime after = AddSeconds(DayFromText(date, day), -kBefore_s);
   while (true) {
-    const std::optional<UtcInstant> next = NextMoonEvent(event, day.place, after);
+    const std::optional<UtcTime> next = NextMoonEvent(event, day.place, after);
     if (!next || DateAt(*next, day) > date) return std::nullopt;
     if (DateAt(*next, day) == date) return next;
     after = AddSeconds(*next, 1.0);
   }
 }
 
-std::optional<UtcInstant> FindEclipseEvent(EclipseEvent event, const UtcInstant& around,
-                                           const EventDay& day) {
-  const UtcInstant midnight = MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), around);
+std::optional<UtcTime> FindEclipseEvent(EclipseEvent event, const UtcTime& around,
+                                        const EventDay& day) {
+  const UtcTime midnight = MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), around);
   const auto eclipse = FindSolarEclipse(day.place, midnight, kSecondsPerDay);
   return eclipse ? InstantOf(event, *eclipse) : std::nullopt;
 }
@@ -228,8 +227,8 @@ EventDay DayOfFrom(const TimesText& times, const EventDay& day) {
   return of_from;
 }
 
-UtcInstant EndOf(const TimesText& times, const EventDay& day, const UtcInstant& from) {
-  const UtcInstant to = InstantFromText(*times.to, day);
+UtcTime EndOf(const TimesText& times, const EventDay& day, const UtcTime& from) {
+  const UtcTime to = InstantFromText(*times.to, day);
   const bool comes_daily = IsDailyEvent(*times.to) || IsClockTime(*times.to);
   if (SecondsBetween(from, to) > 0.0 || !comes_daily) return to;
   EventDay next = day;
@@ -268,8 +267,8 @@ int StepsIn(double span_s, const Step& every) {
   return static_cast<int>(steps);
 }
 
-std::vector<UtcInstant> EverySeconds(const UtcInstant& from, double span_s, const Step& every) {
-  std::vector<UtcInstant> instants;
+std::vector<UtcTime> EverySeconds(const UtcTime& from, double span_s, const Step& every) {
+  std::vector<UtcTime> instants;
   const int steps = StepsIn(span_s, every);
   for (int i = 0; i <= steps; ++i) instants.push_back(AddSeconds(from, every.After(i)));
   return instants;
@@ -277,8 +276,8 @@ std::vector<UtcInstant> EverySeconds(const UtcInstant& from, double span_s, cons
 
 /// Returns the instant of a clock time on a day in the zone. A clock time that is skipped or
 /// repeated by a clock change uses the offset before the change.
-UtcInstant ClockTimeOn(const std::string& date_and_clock, const std::string& zone,
-                       const UtcInstant& before) {
+UtcTime ClockTimeOn(const std::string& date_and_clock, const std::string& zone,
+                    const UtcTime& before) {
   constexpr std::size_t kOffsetAt = 19;  // position of the offset in "2026-06-21T13:00:00+09:00"
   try {
     return ParseInstant(date_and_clock, zone);
@@ -293,19 +292,19 @@ bool IsOfCalendarDays(const Step& every, const EventDay& day) {
   return day.zone && every.text.ends_with('d') && every.is_whole_days;
 }
 
-std::vector<UtcInstant> EveryDays(const UtcInstant& from, double span_s, const Step& every,
-                                  const EventDay& day) {
+std::vector<UtcTime> EveryDays(const UtcTime& from, double span_s, const Step& every,
+                               const EventDay& day) {
   constexpr double kRounding_s = 1e-6;
   const double fraction_s = from.second_of_day - std::floor(from.second_of_day);
-  const UtcInstant whole = AddSeconds(from, -fraction_s);
+  const UtcTime whole = AddSeconds(from, -fraction_s);
   const std::string clock = FormatInZone(whole, *day.zone).substr(10, 9);  // "T13:00:00"
-  const UtcInstant noon = DayFromText(DateAt(from, day), day);
-  std::vector<UtcInstant> instants{from};
+  const UtcTime noon = DayFromText(DateAt(from, day), day);
+  std::vector<UtcTime> instants{from};
   // A span of whole days is an hour longer or shorter if it contains a clock change.
   const int most = StepsIn(span_s + 0.5 * kSecondsPerDay, every);
   for (int i = 1; i <= most; ++i) {
     const std::string date = DateAt(AddSeconds(noon, every.After(i)), day);
-    const UtcInstant next =
+    const UtcTime next =
         AddSeconds(ClockTimeOn(date + clock, *day.zone, instants.back()), fraction_s);
     if (SecondsBetween(from, next) > span_s + kRounding_s) break;
     instants.push_back(next);
@@ -318,7 +317,7 @@ std::vector<UtcInstant> EveryDays(const UtcInstant& from, double span_s, const S
 }
 
 /// Returns the day that a time was written with; that of the place for "now".
-std::string DayOf(std::string_view text, const UtcInstant& instant, const EventDay& day) {
+std::string DayOf(std::string_view text, const UtcTime& instant, const EventDay& day) {
   const std::string_view begin = text.substr(0, kDateLength);
   if (IsDayText(begin)) return std::string(begin);
   const auto [time, written] = TimeOfDayFromText(text, day);
@@ -327,8 +326,8 @@ std::string DayOf(std::string_view text, const UtcInstant& instant, const EventD
 
 /// Returns the seconds from the first frame to the middle between the frame on the day of `to`,
 /// which clock changes move by hours, and the next one.
-double SpanUpToDay(const TimesText& times, const UtcInstant& from, const EventDay& day) {
-  const UtcInstant first = DayFromText(DayOf(*times.from, from, day), day);
+double SpanUpToDay(const TimesText& times, const UtcTime& from, const EventDay& day) {
+  const UtcTime first = DayFromText(DayOf(*times.from, from, day), day);
   const double days =
       std::round(SecondsBetween(first, DayFromText(*times.to, day)) / kSecondsPerDay);
   if (days < 0.0) RefuseDayBefore(times);
@@ -339,18 +338,18 @@ double SpanUpToDay(const TimesText& times, const UtcInstant& from, const EventDa
 bool IsEvent(const std::string& text) { return IsDailyEvent(TimeOfDayFromText(text, {}).text); }
 
 /// Returns the event of `from` on its day and on the following days, up to the day of `to`.
-std::vector<UtcInstant> EventOfEachDay(const TimesText& times, const Step& every,
-                                       const EventDay& day) {
+std::vector<UtcTime> EventOfEachDay(const TimesText& times, const Step& every,
+                                    const EventDay& day) {
   const auto [event, first] = TimeOfDayFromText(*times.from, DayOfFrom(times, day));
   if (!first.around) throw InputError("an event of each day needs a first day: give --date");
-  const UtcInstant last =
+  const UtcTime last =
       IsDayText(*times.to) ? DayFromText(*times.to, day) : InstantFromText(*times.to, first);
-  const auto midnight = [&](const UtcInstant& of) {
+  const auto midnight = [&](const UtcTime& of) {
     return MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), of);
   };
   const double span_s = SecondsBetween(midnight(*first.around), midnight(last));
   if (span_s < 0.0) RefuseDayBefore(times);
-  std::vector<UtcInstant> instants;
+  std::vector<UtcTime> instants;
   const int steps = StepsIn(span_s, every);
   for (int i = 0; i <= steps; ++i) {
     EventDay of_frame = first;
@@ -364,11 +363,11 @@ std::vector<UtcInstant> EventOfEachDay(const TimesText& times, const Step& every
   return instants;
 }
 
-std::vector<UtcInstant> CountBetween(const UtcInstant& from, double span_s, int count) {
+std::vector<UtcTime> CountBetween(const UtcTime& from, double span_s, int count) {
   if (count < 1 || count > kMostInstants) {
     throw InputError(fmt::format("--count is {}; it must lie in [1, {}]", count, kMostInstants));
   }
-  std::vector<UtcInstant> instants;
+  std::vector<UtcTime> instants;
   for (int i = 0; i < count; ++i) {
     instants.push_back(AddSeconds(from, count == 1 ? 0.0 : span_s * i / (count - 1)));
   }
@@ -377,17 +376,17 @@ std::vector<UtcInstant> CountBetween(const UtcInstant& from, double span_s, int 
 
 }  // namespace
 
-std::string DateAt(const UtcInstant& instant, const EventDay& day) {
+std::string DateAt(const UtcTime& instant, const EventDay& day) {
   if (day.zone) return FormatInZone(instant, *day.zone).substr(0, kDateLength);
   const double turns = WrappedLongitude(day.place.longitude_rad) / (2.0 * kPi);
   return FormatUtc(AddSeconds(instant, kSecondsPerDay * turns)).substr(0, kDateLength);
 }
 
-UtcInstant DayFromText(std::string_view date, const EventDay& day) {
+UtcTime DayFromText(std::string_view date, const EventDay& day) {
   RefuseOtherYears(date, "date");
   if (const std::optional<int> days = DaysFromToday(date)) {
-    const UtcInstant noon_today = DayFromText(DateAt(day.now, day), day);
-    const UtcInstant near_noon = AddSeconds(noon_today, *days * kSecondsPerDay);
+    const UtcTime noon_today = DayFromText(DateAt(day.now, day), day);
+    const UtcTime near_noon = AddSeconds(noon_today, *days * kSecondsPerDay);
     return DayFromText(DateAt(near_noon, day), day);  // the clocks can change in between
   }
   if (date.size() != kDateLength) {
@@ -424,11 +423,11 @@ bool IsDailyEvent(std::string_view text) {
          !EndOfDay(text);
 }
 
-std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& day) {
+std::optional<UtcTime> FindDailyEvent(std::string_view text, const EventDay& day) {
   const EventText parts = SplitEvent(text);
   if (parts.name.empty()) RefuseEvent(parts.name, text);
   const double offset_s = OffsetOf(parts);
-  std::optional<UtcInstant> instant;
+  std::optional<UtcTime> instant;
   if (parts.name == "midnight") {
     instant = FindMidnight(day.place, AroundOf(text, day));
   } else if (const std::optional<SunEvent> sun = SunEventFromName(parts.name)) {
@@ -444,7 +443,7 @@ std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& 
   return instant;
 }
 
-UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
+UtcTime InstantFromText(std::string_view text, const EventDay& day) {
   RefuseOtherYears(text, "time");
   if (IsNow(text)) return AddSeconds(day.now, OffsetOf(SplitEvent(text)));
   if (EndOfDay(text)) {
@@ -465,14 +464,14 @@ UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
     RefuseOtherClockTimes(text);
     return ParseInstant(text, day.zone);
   }
-  const std::optional<UtcInstant> instant = FindDailyEvent(text, day);
+  const std::optional<UtcTime> instant = FindDailyEvent(text, day);
   if (!instant) throw InputError(NoSuchEvent(text, day));
   return *instant;
 }
 
-std::vector<UtcInstant> InstantsFromTimes(const TimesText& times, const EventDay& day) {
+std::vector<UtcTime> InstantsFromTimes(const TimesText& times, const EventDay& day) {
   if (!times.at.empty()) {
-    std::vector<UtcInstant> instants;
+    std::vector<UtcTime> instants;
     for (const std::string& text : times.at) instants.push_back(InstantFromText(text, day));
     return instants;
   }
@@ -483,7 +482,7 @@ std::vector<UtcInstant> InstantsFromTimes(const TimesText& times, const EventDay
   if (every && every->is_whole_days && IsEvent(*times.from))
     return EventOfEachDay(times, *every, day);
   const EventDay day_of_from = DayOfFrom(times, day);
-  const UtcInstant from = InstantFromText(*times.from, day_of_from);
+  const UtcTime from = InstantFromText(*times.from, day_of_from);
   EventDay day_of_to = day_of_from;
   if (!IsDailyEvent(*times.from)) day_of_to.around = from;
   const bool ends_with_a_day = every && every->is_whole_days && IsDayText(*times.to);

@@ -16,18 +16,18 @@ namespace alpenglow::atmosphere {
 /// Place and day of "sunrise" and "18:30".
 struct EventDay {
   GeodeticPosition place;
-  std::optional<std::string> zone;   // zone of local times, IANA
-  std::optional<UtcInstant> around;  // any instant of the day; required by events and clock times
-  UtcInstant now = Now();            // reference of "now", "today", "tomorrow", "yesterday"
+  std::optional<std::string> zone;  // zone of local times, IANA
+  std::optional<UtcTime> around;    // any instant of the day; required by events and clock times
+  UtcTime now = Now();              // reference of "now", "today", "tomorrow", "yesterday"
 };
 
 /// Returns the day of an instant at a place, "2026-06-21": in the zone, or in mean solar time
 /// without a zone.
-[[nodiscard]] std::string DateAt(const UtcInstant& instant, const EventDay& day);
+[[nodiscard]] std::string DateAt(const UtcTime& instant, const EventDay& day);
 
 /// Returns the noon, in the zone of `day` or in mean solar time without a zone, of "2026-06-21",
 /// "today", "tomorrow" or "yesterday". Throws InputError for text that is not a date.
-[[nodiscard]] UtcInstant DayFromText(std::string_view date, const EventDay& day);
+[[nodiscard]] UtcTime DayFromText(std::string_view date, const EventDay& day);
 
 /// Returns whether DayFromText accepts a text: a day without a time.
 [[nodiscard]] bool IsDayText(std::string_view text);
@@ -52,7 +52,7 @@ struct TimeOfDay {
 /// whose maximum falls on the day of mean solar time, visible or not. No value if it does not
 /// happen that day (polar day and night; each event of the moon once a month). Throws InputError
 /// for an unknown event, naming the nearest, and for an event without a day.
-[[nodiscard]] std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& day);
+[[nodiscard]] std::optional<UtcTime> FindDailyEvent(std::string_view text, const EventDay& day);
 
 /// Reads a time:
 /// - an instant, "2026-06-21T04:00:00Z" (ParseInstant), in the day's zone without Z or offset;
@@ -64,7 +64,7 @@ struct TimeOfDay {
 /// - "today", "tomorrow", "yesterday": the noon of that day;
 /// - "now", "now+2h".
 /// Throws InputError for other texts, and for an event that does not happen that day.
-[[nodiscard]] UtcInstant InstantFromText(std::string_view text, const EventDay& day);
+[[nodiscard]] UtcTime InstantFromText(std::string_view text, const EventDay& day);
 
 /// The times of a series of frames as given on the command line: either `at`, or `from` and `to`
 /// with `every` or `count`.
@@ -88,7 +88,6 @@ inline constexpr int kMostInstants = 1000000;
 /// `to`; days without the event have no instant. Throws InputError for errors of InstantFromText, a
 /// `to` before `from`, an `every` that is not positive, a `count` below 1, too many instants, no
 /// instant.
-[[nodiscard]] std::vector<UtcInstant> InstantsFromTimes(const TimesText& times,
-                                                        const EventDay& day);
+[[nodiscard]] std::vector<UtcTime> InstantsFromTimes(const TimesText& times, const EventDay& day);
 
 }  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "include/alpenglow/errors.h"
+#include <alpenglow/errors.h>
 
 namespace alpenglow::atmosphere {
 

@@ -171,7 +171,7 @@ struct RoundedInstant {
   std::int64_t fraction;  // in units of 10^-decimals s
 };
 
-RoundedInstant Rounded(const UtcInstant& instant, int decimals) {
+RoundedInstant Rounded(const UtcTime& instant, int decimals) {
   ALPENGLOW_ENSURE(decimals, >=, 0);
   ALPENGLOW_ENSURE(decimals, <=, 9);
   std::int64_t scale = 1;
@@ -184,7 +184,7 @@ RoundedInstant Rounded(const UtcInstant& instant, int decimals) {
   return {instant.modified_julian_day, second, units % scale};
 }
 
-std::string Formatted(const UtcInstant& instant, int decimals, const TimeZone* zone) {
+std::string Formatted(const UtcTime& instant, int decimals, const TimeZone* zone) {
   const RoundedInstant rounded = Rounded(instant, decimals);
   const int leap_s = std::max(rounded.second_of_day - (kDay_s - 1), 0);
   const sys_seconds utc =
@@ -252,21 +252,21 @@ double JulianYear(int modified_julian_day, double second_of_day) {
 
 }  // namespace
 
-UtcInstant Now() {
+UtcTime Now() {
   const auto now = std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now());
   const sys_days day = std::chrono::floor<days>(now);
   return {static_cast<int>(day.time_since_epoch().count()) + kUnixEpoch,
           std::chrono::duration<double>(now - day).count()};
 }
 
-UtcInstant MeanSolarMidnight(double longitude_rad, const UtcInstant& around) {
+UtcTime MeanSolarMidnight(double longitude_rad, const UtcTime& around) {
   const double ahead_s = longitude_rad / (2.0 * kPi) * kDay_s;  // ahead of Greenwich
   const double local_day = std::floor((around.second_of_day + ahead_s) / kDay_s);
   const int day = around.modified_julian_day + static_cast<int>(local_day);
-  return AddSeconds(UtcInstant{day, 0.0}, -ahead_s);
+  return AddSeconds(UtcTime{day, 0.0}, -ahead_s);
 }
 
-UtcInstant ParseInstant(std::string_view text, const std::optional<std::string>& zone) {
+UtcTime ParseInstant(std::string_view text, const std::optional<std::string>& zone) {
   InstantReader reader(text);
   const WrittenTime written = reader.Read();
   if (!written.offset && !zone) {
@@ -281,8 +281,8 @@ UtcInstant ParseInstant(std::string_view text, const std::optional<std::string>&
     reader.Refuse(
         fmt::format("its year of UTC is {}; it must lie in [{}, {}]", year, kFirstYear, kLastYear));
   }
-  UtcInstant instant{static_cast<int>(day.time_since_epoch().count()) + kUnixEpoch,
-                     static_cast<double>((utc - day).count()) + written.fraction};
+  UtcTime instant{static_cast<int>(day.time_since_epoch().count()) + kUnixEpoch,
+                  static_cast<double>((utc - day).count()) + written.fraction};
   if (written.is_leap_second) {
     if ((utc - day).count() != kDay_s - 1 || DayLength(instant.modified_julian_day) <= kDay_s) {
       reader.Refuse("there is no leap second; the second must lie in [0, 59]");
@@ -292,16 +292,16 @@ UtcInstant ParseInstant(std::string_view text, const std::optional<std::string>&
   return instant;
 }
 
-std::string FormatUtc(const UtcInstant& instant, int decimals) {
+std::string FormatUtc(const UtcTime& instant, int decimals) {
   return Formatted(instant, decimals, nullptr);
 }
 
-std::string FormatInZone(const UtcInstant& instant, const std::string& zone) {
+std::string FormatInZone(const UtcTime& instant, const std::string& zone) {
   const TimeZone found(zone);
   return Formatted(instant, 0, &found);
 }
 
-UtcInstant AddSeconds(const UtcInstant& instant, double seconds) {
+UtcTime AddSeconds(const UtcTime& instant, double seconds) {
   if (seconds == 0.0) return instant;  // an instant inside a leap second is preserved
   constexpr double kMost_s = 1e12;     // 30,000 years: days fit an int, seconds are precise to 1e-4
   RequireInRange(seconds, -kMost_s, kMost_s, "seconds");
@@ -312,7 +312,7 @@ UtcInstant AddSeconds(const UtcInstant& instant, double seconds) {
           total_s - carry_days * kDay_s};
 }
 
-double SecondsBetween(const UtcInstant& from, const UtcInstant& to) {
+double SecondsBetween(const UtcTime& from, const UtcTime& to) {
   return static_cast<double>(kDay_s) * (to.modified_julian_day - from.modified_julian_day) +
          (to.second_of_day - from.second_of_day);
 }
@@ -354,7 +354,7 @@ double DayLength(int modified_julian_day) {
   return step_s > 0.5 ? kSecondsPerDay + 1.0 : kSecondsPerDay;
 }
 
-double DeltaT(const UtcInstant& instant) {
+double DeltaT(const UtcTime& instant) {
   const int day = instant.modified_julian_day;
   if (day >= kFirstDayOfUtc && day < kFirstDayUnknown) {
     return TtMinusUtc(day, instant.second_of_day);

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "export.h"
+#include <alpenglow/export.h>
 
 namespace alpenglow::atmosphere {
 

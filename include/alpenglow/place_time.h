@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chrono>
+#include <compare>
 #include <string>
 #include <string_view>
 
@@ -18,18 +19,56 @@ struct Place {
   double height_m = 0.0;       ///< above the ellipsoid, at least -12000
 };
 
-/// An instant of UTC, as a count without leap seconds.
-using UtcTime = std::chrono::sys_time<std::chrono::microseconds>;
+/// An instant of UTC, as a day and the second in it. Its default is the beginning of 1970.
+///
+/// The system clock of C++ (std::chrono::sys_time) has no leap seconds: there, a leap second is the
+/// first second of the next day. Arithmetic counts as that clock does.
+struct UtcTime {
+  int modified_julian_day = 40587;  ///< number of the day; 0 is 1858-11-17, 40587 is 1970-01-01
+  double second_of_day = 0.0;  ///< in [0, 86400), or [0, 86401) if the day ends in a leap second
+
+  constexpr UtcTime() = default;
+  /// Makes an instant from its members.
+  constexpr UtcTime(int day, double second) : modified_julian_day(day), second_of_day(second) {}
+  /// Makes an instant from a time of the system clock.
+  template <typename Duration>
+  constexpr UtcTime(std::chrono::sys_time<Duration> time)  // NOLINT: as durations convert
+      : UtcTime(time.time_since_epoch()) {}
+  /// Makes an instant from the time since the beginning of 1970, counted without leap seconds.
+  template <typename Number, typename Period>
+  constexpr explicit UtcTime(std::chrono::duration<Number, Period> since_1970) {
+    const auto day = std::chrono::floor<std::chrono::days>(since_1970);
+    modified_julian_day += static_cast<int>(day.count());
+    second_of_day = std::chrono::duration<double>(since_1970 - day).count();
+  }
+
+  /// Returns the time of the system clock, rounded to microseconds.
+  operator std::chrono::sys_time<std::chrono::microseconds>() const;  // NOLINT: as above
+
+  /// Moves the instant. Throws InputError for steps that are not finite or longer than 1e12 s.
+  UtcTime& operator+=(std::chrono::duration<double> step);
+  UtcTime& operator-=(std::chrono::duration<double> step);  ///< moves it back
+
+  /// Orders instants; a leap second lies before the first second of the next day.
+  [[nodiscard]] auto operator<=>(const UtcTime&) const = default;
+};
+
+/// Returns the moved instant. Throws InputError for steps that are not finite or longer than 1e12 s.
+[[nodiscard]] UtcTime operator+(const UtcTime& time, std::chrono::duration<double> step);
+/// Returns the instant, moved back. Throws InputError as operator+ does.
+[[nodiscard]] UtcTime operator-(const UtcTime& time, std::chrono::duration<double> step);
+/// Returns the time from the right instant to the left one.
+[[nodiscard]] std::chrono::duration<double> operator-(const UtcTime& to, const UtcTime& from);
 
 /// Reads ISO 8601, such as "2026-06-21T04:00:00Z" or "2026-06-21T13:00:00+09:00", years 1900 to
-/// 2100. Throws InputError for other texts, for an unknown zone, and for a local time that exists
-/// twice or not at all. A leap second becomes the first second of the next day.
+/// 2100. Throws InputError for other texts, for an unknown zone, for a local time that exists twice
+/// or not at all, and for a second 60 that was no leap second.
 /// @param text  the time.
 /// @param zone  IANA name of the zone of a text without an offset, such as "Asia/Tokyo".
 [[nodiscard]] UtcTime TimeFromText(std::string_view text, const std::string& zone = "");
 
 /// Returns a text such as "2026-06-21T04:00:00Z", rounded to seconds. Throws InputError for a year
 /// outside [1900, 2100].
-[[nodiscard]] std::string TextFromTime(UtcTime time);
+[[nodiscard]] std::string TextFromTime(const UtcTime& time);
 
 }  // namespace alpenglow

@@ -77,11 +77,11 @@ class Scene {
   /// Renders a still on all processors. Its bytes do not depend on their number. Pictures of whole
   /// scenes are compared with stored ones by golden_test. Throws InputError for options out of
   /// range and an unknown layer.
-  [[nodiscard]] HdrImage Render(UtcTime time, const StillOptions& options = {}) const;
+  [[nodiscard]] HdrImage Render(const UtcTime& time, const StillOptions& options = {}) const;
 
   /// Returns the illuminance of sun, moon and sky on a horizontal plane at the eye, without terrain
   /// [lx].
-  [[nodiscard]] double HorizontalIlluminance(UtcTime time) const;
+  [[nodiscard]] double HorizontalIlluminance(const UtcTime& time) const;
 
   /// Returns the message of the terrain loader, for example about filled voids; empty if there is
   /// none.

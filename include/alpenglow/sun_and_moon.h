@@ -44,11 +44,13 @@ struct MoonInSky {
 /// Returns the sun as seen from a place, with the refraction of an atmosphere. Without refraction
 /// the direction is within 2 arcseconds of the NREL Solar Position Algorithm (asserted by
 /// sun_test). Throws InputError for a place out of range and a year outside [1900, 2100].
-[[nodiscard]] SunInSky SunAt(const Place& place, UtcTime time, const Atmosphere& atmosphere = {});
+[[nodiscard]] SunInSky SunAt(const Place& place, const UtcTime& time,
+                             const Atmosphere& atmosphere = {});
 
 /// Returns the moon as seen from a place, with the refraction of an atmosphere. Throws InputError
 /// for a place out of range and a year outside [1900, 2100].
-[[nodiscard]] MoonInSky MoonAt(const Place& place, UtcTime time, const Atmosphere& atmosphere = {});
+[[nodiscard]] MoonInSky MoonAt(const Place& place, const UtcTime& time,
+                               const Atmosphere& atmosphere = {});
 
 /// Returns the time of an event on the local solar day that contains `around`, or std::nullopt if
 /// it does not happen on that day, as in polar night. Error of the search: below 0.1 s (asserted by
@@ -59,6 +61,6 @@ struct MoonInSky {
 /// @param place  of the observer; its height lowers the horizon.
 /// @param around  any time of the day.
 [[nodiscard]] std::optional<UtcTime> SunEventTime(std::string_view event, const Place& place,
-                                                  UtcTime around);
+                                                  const UtcTime& around);
 
 }  // namespace alpenglow

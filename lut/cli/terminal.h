@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "include/alpenglow/errors.h"
+#include <alpenglow/errors.h>
 
 namespace alpenglow::lut {
 

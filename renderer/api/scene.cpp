@@ -88,22 +88,22 @@ Scene Scene::Read(const std::filesystem::path& file) {
   return Scene(std::make_shared<const State>(renderer::ReadScene(file)));
 }
 
-HdrImage Scene::Render(UtcTime time, const StillOptions& options) const {
+HdrImage Scene::Render(const UtcTime& time, const StillOptions& options) const {
   renderer::RenderSettings settings;
   settings.width = options.width;
   settings.height = options.height;
   settings.samples_per_pixel = options.samples_per_pixel;
   settings.noise = options.noise;
   settings.layers = renderer::LayersFromNames(options.layers);
-  HdrImage still = HdrImageFrom(state_->renderer.Render(InstantFromTime(time), settings));
+  HdrImage still = HdrImageFrom(state_->renderer.Render(RequireValid(time), settings));
   still.is_panorama = state_->scene.camera.IsPanorama();
   still.metadata = renderer::PictureMetadata(state_->scene, state_->hashes, settings);
   still.metadata["alpenglow.utc"] = TextFromTime(time);
   return still;
 }
 
-double Scene::HorizontalIlluminance(UtcTime time) const {
-  return state_->renderer.Illuminance(InstantFromTime(time));
+double Scene::HorizontalIlluminance(const UtcTime& time) const {
+  return state_->renderer.Illuminance(RequireValid(time));
 }
 
 const std::string& Scene::terrain_message() const { return state_->renderer.terrain_message(); }

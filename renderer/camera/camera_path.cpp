@@ -213,7 +213,7 @@ CameraPose CameraPath::PoseAt(double time_s) const {
   return pose;
 }
 
-std::optional<UtcInstant> CameraPath::UtcAt(double time_s) const {
+std::optional<UtcTime> CameraPath::UtcAt(double time_s) const {
   if (utc_s_.empty()) return std::nullopt;
   const Span span = SpanAt(time_s);
   const double begin = utc_s_[span.left];

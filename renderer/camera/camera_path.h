@@ -71,7 +71,7 @@ struct CameraPose {
 struct CameraPathPoint {
   double time_s = 0.0;
   CameraPose pose;
-  std::optional<UtcInstant> utc = std::nullopt;
+  std::optional<UtcTime> utc = std::nullopt;
   bool after_gap = false;  // the path from the previous point to this one is unknown
 };
 
@@ -90,7 +90,7 @@ class CameraPath {
   /// there.
   [[nodiscard]] CameraPose PoseAt(double time_s) const;
   /// Returns the instant, linear in time between points; empty when the path has no instants.
-  [[nodiscard]] std::optional<UtcInstant> UtcAt(double time_s) const;
+  [[nodiscard]] std::optional<UtcTime> UtcAt(double time_s) const;
 
   /// Returns poses at equal time steps between two times, both included. A `count` of 1 gives the
   /// pose at the middle.

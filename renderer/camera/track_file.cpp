@@ -127,7 +127,7 @@ class TrackReader {
   }
 
   /// Returns nothing if there is no text.
-  [[nodiscard]] std::optional<UtcInstant> Instant(const XMLElement* element) {
+  [[nodiscard]] std::optional<UtcTime> Instant(const XMLElement* element) {
     const std::string_view text = TextOf(element);
     if (text.empty()) return std::nullopt;
     return Tried(*element, [&] { return std::optional(ParseInstant(text, "Etc/UTC")); });

@@ -27,21 +27,19 @@ struct Counts {
   bool times_dropped = false, times_contradict = false;
 };
 
-std::vector<UtcInstant> TimesOf(const RecordedSegment& segment) {
-  std::vector<UtcInstant> times;
+std::vector<UtcTime> TimesOf(const RecordedSegment& segment) {
+  std::vector<UtcTime> times;
   for (const RecordedPoint& point : segment) {
     if (point.utc) times.push_back(*point.utc);
   }
   return times;
 }
 
-bool IsBefore(const UtcInstant& one, const UtcInstant& other) {
-  return SecondsBetween(one, other) > 0.0;
-}
+bool IsBefore(const UtcTime& one, const UtcTime& other) { return SecondsBetween(one, other) > 0.0; }
 
 /// Returns whether most of its times precede the time before them.
 bool RunsBackwards(const RecordedSegment& segment) {
-  const std::vector<UtcInstant> times = TimesOf(segment);
+  const std::vector<UtcTime> times = TimesOf(segment);
   int steps = 0;
   for (std::size_t i = 1; i < times.size(); ++i) {
     steps += IsBefore(times[i - 1], times[i]) ? 1 : IsBefore(times[i], times[i - 1]) ? -1 : 0;
@@ -50,8 +48,8 @@ bool RunsBackwards(const RecordedSegment& segment) {
 }
 
 /// Returns the median time, which a single wrong time does not shift.
-UtcInstant MedianTime(const RecordedSegment& segment) {
-  std::vector<UtcInstant> times = TimesOf(segment);
+UtcTime MedianTime(const RecordedSegment& segment) {
+  std::vector<UtcTime> times = TimesOf(segment);
   const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
   std::nth_element(times.begin(), middle, times.end(), IsBefore);
   return *middle;
@@ -76,7 +74,7 @@ std::vector<RecordedSegment> InOrder(std::vector<RecordedSegment> segments) {
       std::all_of(segments.begin(), segments.end(),
                   [](const RecordedSegment& segment) { return !TimesOf(segment).empty(); });
   if (!all_timed) return segments;
-  std::vector<std::pair<UtcInstant, std::size_t>> order;
+  std::vector<std::pair<UtcTime, std::size_t>> order;
   for (std::size_t i = 0; i < segments.size(); ++i) order.emplace_back(MedianTime(segments[i]), i);
   std::stable_sort(order.begin(), order.end(), [](const auto& one, const auto& other) {
     return IsBefore(one.first, other.first);
@@ -280,7 +278,7 @@ void CompleteTimes(std::vector<PlacedPoint>& points, Counts& counts) {
   const auto first = std::find_if(points.begin(), points.end(), [](const PlacedPoint& point) {
     return point.recorded.utc.has_value();
   });
-  const UtcInstant origin = *first->recorded.utc;
+  const UtcTime origin = *first->recorded.utc;
   counts.times = static_cast<std::size_t>(std::count(known.begin(), known.end(), std::nullopt));
   const std::vector<double> times_s =
       CompletedAlong(way_m, known, [&](std::size_t i, std::size_t near, std::size_t next) {

@@ -22,7 +22,7 @@ namespace alpenglow::renderer {
 struct RecordedPoint {
   std::optional<GeodeticPosition> place;  // height 0; empty: the fix was lost
   std::optional<double> height_m;
-  std::optional<UtcInstant> utc;
+  std::optional<UtcTime> utc;
   /// The recorder marks a pause here with an impossible place; the next point begins a segment.
   bool is_pause = false;
 };

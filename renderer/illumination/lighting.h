@@ -76,11 +76,11 @@ struct Lighting {
 
 /// Returns the lighting for the sun's position, with the seasonal cover of the ground at a place.
 /// @param wetness  see MountainSurface.
-[[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
+[[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcTime& instant,
                                   const GeodeticPosition& place, const Medium& medium,
                                   double wetness = 0.0);
 /// Returns the lighting by any distant light.
-[[nodiscard]] Lighting LightingOf(const DistantLight& light, const UtcInstant& instant,
+[[nodiscard]] Lighting LightingOf(const DistantLight& light, const UtcTime& instant,
                                   const GeodeticPosition& place, const Medium& medium,
                                   double wetness = 0.0);
 

@@ -86,7 +86,7 @@ inline constexpr double kDaylight_lux = 5000.0;
 /// east, north, up at the eye, refracted (without dispersion). While the shutter is open, planets
 /// move with the stars (they are off by 0.2 arcseconds a minute).
 [[nodiscard]] std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye,
-                                                    const UtcInstant& instant,
+                                                    const UtcTime& instant,
                                                     const RefractedView& view,
                                                     const BandColour& colour, double faintest,
                                                     const OpenShutter& shutter = {});

@@ -222,7 +222,7 @@ class GroundFollower {
 
   struct View {
     GeodeticPosition eye;
-    UtcInstant now;
+    UtcTime now;
     DistantLight by;  // that casts the shadows; in the frame east, north, up of the eye
     std::optional<DistantLight> other = std::nullopt;  // if it is significant
   };

@@ -35,7 +35,7 @@ class ReferencePicture {
   struct View {
     std::shared_ptr<const ReferenceScene> of;
     CameraPose eye;
-    UtcInstant now;
+    UtcTime now;
     int width, height;  // of the full picture [pixels]
   };
 

@@ -74,9 +74,9 @@ class RenderingStopped : public std::exception {
 
 /// Time and camera of a picture.
 struct CameraSample {
-  CameraSample(const UtcInstant& at) : instant(at) {}  // NOLINT: the camera of the scene
+  CameraSample(const UtcTime& at) : instant(at) {}  // NOLINT: the camera of the scene
 
-  UtcInstant instant;
+  UtcTime instant;
   /// Sun and moon at the eye (SceneRenderer::BodiesOver); each call computes them if they are
   /// missing.
   std::optional<SkyBodies> bodies = std::nullopt;

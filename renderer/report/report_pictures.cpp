@@ -67,7 +67,7 @@ Scene RangeScene(bool quick, int width) {
   return scene;
 }
 
-UtcInstant InstantOf(std::size_t r) {
+UtcTime InstantOf(std::size_t r) {
   const Scene range = SceneFromOptions({});
   return InstantFromText(kSceneTexts[r].time, {range.place, range.zone, range.time});
 }
@@ -182,7 +182,7 @@ class PicturesTopic {
  private:
   struct ReferenceSceneCase {
     std::shared_ptr<const SceneRenderer> renderer;
-    UtcInstant instant;
+    UtcTime instant;
     Image reference{};
     double frame_s = 0.0;  // time to prepare a picture
   };

@@ -211,7 +211,7 @@ std::string ZoneNear(const GeodeticPosition& place, const std::optional<std::str
   return fmt::format("Etc/GMT{}{}", ahead_h > 0 ? "-" : "+", std::abs(ahead_h));
 }
 
-LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone) {
+LocalTime LocalTimeAt(const UtcTime& instant, const std::string& zone) {
   const std::string text = FormatInZone(instant, zone);  // "2026-06-21T13:00:00+09:00"
   LocalTime local;
   local.date = text.substr(0, 10);
@@ -225,7 +225,7 @@ LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone) {
     for (char& c : local.zone) c = c == '-' ? '+' : c == '+' ? '-' : c;
     local.zone.insert(0, "UTC");
   }
-  const UtcInstant midnight = ParseInstant(local.date + "T00:00:00" + local.offset);
+  const UtcTime midnight = ParseInstant(local.date + "T00:00:00" + local.offset);
   local.day_fraction = std::clamp(SecondsBetween(midnight, instant) / 86400.0, 0.0, 0.9999999);
   return local;
 }

@@ -58,6 +58,6 @@ struct LocalTime {
   double day_fraction;             // elapsed fraction of the day, [0, 1)
 };
 /// Throws InputError if the zone does not exist.
-[[nodiscard]] LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone);
+[[nodiscard]] LocalTime LocalTimeAt(const UtcTime& instant, const std::string& zone);
 
 }  // namespace alpenglow::renderer

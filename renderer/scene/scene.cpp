@@ -69,12 +69,11 @@ void ReadPlace(const TomlTable& document, Scene& scene) {
   const double latitude = Required(*table, "latitude");
   const double longitude = Required(*table, "longitude");
   PlaceFields().Read(*table, scene);
-  if (scene.zone) At(*table, "zone", [&] { return FormatInZone(UtcInstant{}, *scene.zone); });
+  if (scene.zone) At(*table, "zone", [&] { return FormatInZone(UtcTime{}, *scene.zone); });
   scene.place = PlaceFromDegrees(latitude, longitude, 0.0);
 }
 
-std::optional<UtcInstant> TimeOf(const TomlTable& document,
-                                 const std::optional<std::string>& zone) {
+std::optional<UtcTime> TimeOf(const TomlTable& document, const std::optional<std::string>& zone) {
   const std::optional<TomlSection> table = SectionOf(document, TimeFields());
   if (!table) return std::nullopt;
   const std::optional<std::string> utc = table->Text("utc");

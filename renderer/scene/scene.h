@@ -166,7 +166,7 @@ struct Volume {
 struct Scene {
   GeodeticPosition place;           // with height 0
   std::optional<std::string> zone;  // IANA name
-  std::optional<UtcInstant> time;
+  std::optional<UtcTime> time;
   Camera camera;
   Medium medium;  // default: preset "earth"
   TerrainSource terrain;

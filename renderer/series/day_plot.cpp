@@ -64,21 +64,21 @@ class TimeAxis {
         zone_(zone),
         span_s_(std::max(SecondsBetween(first_, moments.back().instant), 1.0)) {}
 
-  [[nodiscard]] double X(const UtcInstant& instant) const {
+  [[nodiscard]] double X(const UtcTime& instant) const {
     return kLeft + SecondsBetween(first_, instant) / span_s_ * (kWidth - kLeft - kRight);
   }
-  [[nodiscard]] std::string Local(const UtcInstant& instant) const {
+  [[nodiscard]] std::string Local(const UtcTime& instant) const {
     return zone_ ? FormatInZone(instant, *zone_) : FormatUtc(instant);
   }
   /// Returns instants at round local times, with their labels.
-  [[nodiscard]] std::vector<std::pair<UtcInstant, std::string>> Ticks() const {
+  [[nodiscard]] std::vector<std::pair<UtcTime, std::string>> Ticks() const {
     const double step_s = Step();
     const std::string local = Local(first_);
     const auto digits = [&](std::size_t at) {
       return ParseWholeNumber(std::string_view(local).substr(at, 2)).value();
     };
     const double clock_s = 3600.0 * digits(11) + 60.0 * digits(14) + digits(17);
-    std::vector<std::pair<UtcInstant, std::string>> ticks;
+    std::vector<std::pair<UtcTime, std::string>> ticks;
     const double before_s = std::fmod(clock_s, std::min(step_s, kSecondsPerDay));
     for (double at_s = before_s > 0.0 ? std::min(step_s, kSecondsPerDay) - before_s : 0.0;
          at_s <= span_s_; at_s += step_s) {
@@ -101,7 +101,7 @@ class TimeAxis {
     return kSecondsPerDay * std::ceil(span_s_ / kSecondsPerDay / kMost);
   }
 
-  UtcInstant first_;
+  UtcTime first_;
   std::optional<std::string> zone_;
   double span_s_;
 };

@@ -13,7 +13,7 @@ namespace alpenglow::renderer {
 
 /// Values of a frame in the plot.
 struct PlottedMoment {
-  UtcInstant instant;
+  UtcTime instant;
   double sun_elevation_deg = 0.0, moon_elevation_deg = 0.0;  // without refraction
   std::optional<double> illuminance_lx = {};                 // of sky and lights on level ground
   std::optional<double> ev100 = {};

@@ -37,7 +37,7 @@ constexpr std::array<std::array<const char*, 2>, kTimesOfDay.size()> kHeads{{{"a
 
 /// Returns the visible eclipse of the mean solar day, which has the daylight in its middle.
 std::optional<SeenEclipse> EclipseOf(const EventDay& day, const DayTimes& times) {
-  const UtcInstant midnight =
+  const UtcTime midnight =
       MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), *day.around);
   const auto eclipse = FindSolarEclipse(day.place, midnight, kSecondsPerDay);
   if (!eclipse) return std::nullopt;
@@ -60,7 +60,7 @@ DayTimes TimesOf(const EventDay& day) {
   for (std::size_t i = 0; i < kTimesOfDay.size(); ++i) {
     times.at[i] = FindDailyEvent(kTimesOfDay[i], day);
   }
-  const UtcInstant noon = *FindSunEvent(SunEvent::kNoon, day.place, *day.around);
+  const UtcTime noon = *FindSunEvent(SunEvent::kNoon, day.place, *day.around);
   times.noon_elevation_deg = ApparentSunAt(day.place, noon).elevation_rad / kRadiansPerDegree;
   times.moon_illuminated = MoonAt(day.place, noon).IlluminatedFraction();
   times.eclipse = EclipseOf(day, times);
@@ -68,16 +68,16 @@ DayTimes TimesOf(const EventDay& day) {
 }
 
 /// Returns "04:25", in the zone or in UTC.
-std::string ClockTime(const std::optional<UtcInstant>& instant,
+std::string ClockTime(const std::optional<UtcTime>& instant,
                       const std::optional<std::string>& zone) {
   if (!instant) return "--:--";
   constexpr double kHalfMinute_s = 30.0;
-  const UtcInstant rounded = AddSeconds(*instant, kHalfMinute_s);
+  const UtcTime rounded = AddSeconds(*instant, kHalfMinute_s);
   return (zone ? FormatInZone(rounded, *zone) : FormatUtc(rounded)).substr(11, 5);
 }
 
 /// Returns "20:28:13", in the zone or in UTC.
-std::string ClockSecond(const UtcInstant& instant, const std::optional<std::string>& zone) {
+std::string ClockSecond(const UtcTime& instant, const std::optional<std::string>& zone) {
   return (zone ? FormatInZone(instant, *zone) : FormatUtc(instant)).substr(11, 8);
 }
 

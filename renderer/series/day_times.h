@@ -30,8 +30,7 @@ struct SeenEclipse {
 /// Sun and moon of a day at a place.
 struct DayTimes {
   std::string date;
-  std::array<std::optional<UtcInstant>, kTimesOfDay.size()>
-      at;                     // empty for events that do not happen
+  std::array<std::optional<UtcTime>, kTimesOfDay.size()> at;  // empty for events that do not happen
   double noon_elevation_deg;  // refracted elevation of the sun's centre in the meridian
   double moon_illuminated;    // illuminated fraction of the disk at that noon, [0, 1]
   std::optional<SeenEclipse> eclipse = std::nullopt;

@@ -131,7 +131,7 @@ std::filesystem::path FrameName::Folder() const {
 
 std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day) {
   std::vector<Frame> frames;
-  for (const UtcInstant& instant : InstantsFromTimes(times, day)) {
+  for (const UtcTime& instant : InstantsFromTimes(times, day)) {
     frames.push_back({static_cast<int>(frames.size()), instant});
   }
   return frames;
@@ -163,8 +163,7 @@ double FrameInterval(const CameraPath& path, const PathRate& rate) {
   return (path.end_s() - path.begin_s()) / std::max(*rate.count - 1, 1);
 }
 
-std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
-                               const UtcInstant& start) {
+std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate, const UtcTime& start) {
   const double interval_s = FrameInterval(path, rate);
   const double length_s = path.end_s() - path.begin_s();
   // A last frame that rounding places after the end of the path still belongs to it.

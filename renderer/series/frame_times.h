@@ -45,7 +45,7 @@ class FrameName {
 /// One picture of a series. Numbers start at 0.
 struct Frame {
   int number;
-  UtcInstant instant;
+  UtcTime instant;
   double path_s = 0.0;  // position on the camera path, if there is one
 };
 
@@ -76,7 +76,7 @@ struct PathRate {
 /// has none, `start` is the instant of its first point. Throws InputError like FrameInterval, and
 /// for more than kMostFrames.
 [[nodiscard]] std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
-                                             const UtcInstant& start);
+                                             const UtcTime& start);
 
 /// Returns the camera of a frame; with an open shutter, its motion during the exposure, which is
 /// centred on the frame.

@@ -121,7 +121,7 @@ std::span<const NoiseOctave> OctavesOf(GroundNoise family) {
   return kOctaves[static_cast<std::size_t>(family)];
 }
 
-double SeaTime(const UtcInstant& instant) {
+double SeaTime(const UtcTime& instant) {
   return (instant.modified_julian_day - 58849) * kSecondsPerDay + instant.second_of_day;
 }
 

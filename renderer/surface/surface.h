@@ -55,7 +55,7 @@ struct NoiseOctave {
 [[nodiscard]] std::span<const NoiseOctave> OctavesOf(GroundNoise family);
 
 /// Returns the time of waves: seconds since the beginning of 2020.
-[[nodiscard]] double SeaTime(const UtcInstant& instant);
+[[nodiscard]] double SeaTime(const UtcTime& instant);
 
 /// Returns the phase speed of waves in deep water [m/s], from omega^2 = g k + (s / rho) k^3 with
 /// the surface tension of water, s / rho = 7.4e-5 m^3/s^2: Lamb (1932), Hydrodynamics, section 267.

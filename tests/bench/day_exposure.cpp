@@ -88,14 +88,14 @@ Scene SceneNamed(const std::string& name, double heading) {
   return scene;
 }
 
-std::vector<Minute> DayOf(const UtcInstant& begin, const SceneRenderer& renderer,
+std::vector<Minute> DayOf(const UtcTime& begin, const SceneRenderer& renderer,
                           const GeodeticPosition& place, const std::array<int, 2>& hours) {
   RenderSettings settings;
   settings.width = 48;
   settings.height = 27;
   std::vector<Minute> day;
   for (int minute = 60 * hours[0]; minute < 60 * hours[1]; ++minute) {
-    const UtcInstant now = AddSeconds(begin, 60.0 * minute);
+    const UtcTime now = AddSeconds(begin, 60.0 * minute);
     Minute made{{static_cast<int>(day.size()), now}, renderer.Render(now, settings)};
     made.lux = renderer.Illuminance(now);
     made.light = MeanLuminance(made.picture);

@@ -245,8 +245,8 @@ TEST_F(Skyseries, FilesOfAnEclipseHaveTheCoveredShare) {
   ASSERT_EQ(
       Run("times --latitude 42.3439 --longitude -3.6969 --date 2026-08-12 --out " + times).status,
       0);
-  const UtcInstant total = ParseInstant(FieldOf(ContentOf(times), "eclipse_second_contact"));
-  const UtcInstant taken = ParseInstant(Header("e.1.exr").at("alpenglow.utc"));
+  const UtcTime total = ParseInstant(FieldOf(ContentOf(times), "eclipse_second_contact"));
+  const UtcTime taken = ParseInstant(Header("e.1.exr").at("alpenglow.utc"));
   EXPECT_NEAR(SecondsBetween(total, taken), 52.0, 1.0);
 }
 

@@ -53,7 +53,7 @@ class FlightsOverLand : public tests::HeadlessTile {
     settings.first_air = tests::SharedAirOf(scene);
     return settings;
   }
-  [[nodiscard]] static UtcInstant Evening() { return ParseInstant("2026-06-21T18:20:00Z"); }
+  [[nodiscard]] static UtcTime Evening() { return ParseInstant("2026-06-21T18:20:00Z"); }
   [[nodiscard]] static FlightSession SmallFlight(const Scene& scene) {
     return {scene, Evening(), SettingsFor(scene)};
   }
@@ -425,7 +425,7 @@ TEST_F(NumberedNames, AFlightThatIsBeingRecordedHasItsNumber) {
 
 TEST(FrameTimes, TheFlightIsSteadyLevelAndTimeRunsSixtyfold) {
   const CameraPose start{PlaceFromDegrees(46.0, 8.0, 3000.0), 0.7};
-  const UtcInstant begin = ParseInstant("2026-06-21T18:00:00Z");
+  const UtcTime begin = ParseInstant("2026-06-21T18:00:00Z");
   const auto at = [&](double seconds) { return BenchmarkFlight(start, begin, seconds); };
   EXPECT_NEAR(at(0.0).eye.place.latitude_rad, start.place.latitude_rad, 1e-12);
   for (const double seconds : {0.0, 3.0, 40.0, 600.0}) {

@@ -598,7 +598,7 @@ TEST_F(SkyviewLand, OverBothPolesAndTheDateLineItShowsTheLandOfTheRenderer) {
 }
 
 /// The instant of the first frame of a list of skyseries.
-UtcInstant FirstListed(const std::string& list) {
+UtcTime FirstListed(const std::string& list) {
   constexpr std::size_t kInstant = 20;  // "2026-06-21T04:00:00Z"
   const std::size_t frame = list.find("\n0,");
   return ParseInstant(frame == std::string::npos ? list : list.substr(frame + 3, kInstant));
@@ -615,7 +615,7 @@ TEST_F(SkyviewLand, AnEventIsAtTheTimeThatSkyseriesLists) {
     ASSERT_EQ(listed.status, 0) << listed.error;
     const Outcome seen = TakeScreenshot(seen_at + " --altitude 3000 --time" + event, "e.exr");
     ASSERT_EQ(seen.status, 0) << seen.error;
-    const UtcInstant shown = ParseInstant(ReadExrMetadata(folder_ / "e.exr").at("alpenglow.time"));
+    const UtcTime shown = ParseInstant(ReadExrMetadata(folder_ / "e.exr").at("alpenglow.time"));
     EXPECT_NEAR(SecondsBetween(FirstListed(listed.out), shown), 0.0, 0.51) << seen_at;
   }
 }

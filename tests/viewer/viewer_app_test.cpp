@@ -76,7 +76,7 @@ class ViewerAppTest : public tests::HeadlessSharing<BareFlight> {
   }
   struct Moment {
     CameraPose eye;
-    UtcInstant now;
+    UtcTime now;
   };
   std::vector<Moment> Fly(int frames) {
     std::vector<Moment> moments;

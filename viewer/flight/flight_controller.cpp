@@ -22,12 +22,12 @@ namespace {
 constexpr std::array<double, 11> kTimeRates{-3600.0, -600.0, -60.0, -10.0, -1.0,  0.0,
                                             1.0,     10.0,   60.0,  600.0, 3600.0};
 
-const UtcInstant& FirstInstant() {
-  static const UtcInstant first = ParseInstant("1900-01-01T00:00:00Z");
+const UtcTime& FirstInstant() {
+  static const UtcTime first = ParseInstant("1900-01-01T00:00:00Z");
   return first;
 }
-const UtcInstant& LastInstant() {
-  static const UtcInstant last = ParseInstant("2100-12-31T23:59:59Z");
+const UtcTime& LastInstant() {
+  static const UtcTime last = ParseInstant("2100-12-31T23:59:59Z");
   return last;
 }
 
@@ -49,7 +49,7 @@ const EventRow& RowOf(SkyEvent event) { return kEventRows[static_cast<std::size_
 /// Returns whether the sun of the day reaches the elevations of the event, with a margin of 2
 /// degrees: its declination changes by 0.4 degrees a day. Most days of a polar night need no
 /// search.
-bool CanHappen(SunEvent event, const GeodeticPosition& place, const UtcInstant& day) {
+bool CanHappen(SunEvent event, const GeodeticPosition& place, const UtcTime& day) {
   constexpr double kMargin_rad = 2.0 * kRadiansPerDegree, kTwilight_rad = -6.0 * kRadiansPerDegree;
   if (event == SunEvent::kNoon) return true;
   const bool at_horizon = event == SunEvent::kSunrise || event == SunEvent::kSunset;
@@ -84,15 +84,15 @@ double SteppedTimeRate(double rate, int step) {
 
 const char* NameOf(SkyEvent event) { return RowOf(event).name; }
 
-std::optional<UtcInstant> NextEvent(SkyEvent event, const GeodeticPosition& place,
-                                    const UtcInstant& after) {
+std::optional<UtcTime> NextEvent(SkyEvent event, const GeodeticPosition& place,
+                                 const UtcTime& after) {
   const auto& of = RowOf(event).of;
   if (const auto* moon = std::get_if<MoonEvent>(&of)) return NextMoonEvent(*moon, place, after);
   constexpr int kDays = 366;
   constexpr double kSame_s = 1.0;
   const SunEvent sun = std::get<SunEvent>(of);
   for (int day = 0; day <= kDays; ++day) {
-    const UtcInstant around = AddSeconds(after, day * kSecondsPerDay);
+    const UtcTime around = AddSeconds(after, day * kSecondsPerDay);
     if (!CanHappen(sun, place, around)) continue;
     const auto found = FindSunEvent(sun, place, around);
     if (found && SecondsBetween(after, *found) > kSame_s) return found;
@@ -110,14 +110,14 @@ void SceneClock::SetRate(double rate) {
 
 void SceneClock::Shift(double seconds) { Set(AddSeconds(now_, seconds)); }
 
-void SceneClock::Set(const UtcInstant& instant) {
+void SceneClock::Set(const UtcTime& instant) {
   const bool early = SecondsBetween(FirstInstant(), instant) < 0.0;
   const bool late = SecondsBetween(instant, LastInstant()) < 0.0;
   now_ = early ? FirstInstant() : late ? LastInstant() : instant;
 }
 
 bool SceneClock::JumpToNext(SkyEvent event, const GeodeticPosition& place) {
-  const std::optional<UtcInstant> next = NextEvent(event, place, now_);
+  const std::optional<UtcTime> next = NextEvent(event, place, now_);
   if (next) Set(*next);
   return next.has_value();
 }
@@ -139,7 +139,7 @@ void FlightController::Advance(const PilotControls& controls, double seconds) {
 
 // During a replay the clock moves with the replayed time, including pauses and jumps; offsets set
 // by the user remain.
-void FlightController::AdvanceClock(const std::optional<UtcInstant>& before, double seconds) {
+void FlightController::AdvanceClock(const std::optional<UtcTime>& before, double seconds) {
   if (before) {
     clock_.Shift(SecondsBetween(*before, *pilot_.TrackUtc()));
   } else {

@@ -32,15 +32,15 @@ inline constexpr std::array<SkyEvent, 7> kSkyEvents{
 /// Returns the next occurrence of an event at a place, after an instant and for the sun more than a
 /// second after it. Instants are those of FindSunEvent and NextMoonEvent. Returns nullopt if the
 /// event does not occur within 366 days (sun) or 30 days (moon).
-[[nodiscard]] std::optional<UtcInstant> NextEvent(SkyEvent event, const GeodeticPosition& place,
-                                                  const UtcInstant& after);
+[[nodiscard]] std::optional<UtcTime> NextEvent(SkyEvent event, const GeodeticPosition& place,
+                                               const UtcTime& after);
 
 /// Clock of the scene. Its range is the years 1900 to 2100; it stops at their ends.
 class SceneClock {
  public:
-  explicit SceneClock(const UtcInstant& start) : now_(start) {}
+  explicit SceneClock(const UtcTime& start) : now_(start) {}
 
-  [[nodiscard]] const UtcInstant& now() const { return now_; }
+  [[nodiscard]] const UtcTime& now() const { return now_; }
   /// Rate in seconds per second; it is kept while the clock is paused.
   [[nodiscard]] double rate() const { return rate_; }
   [[nodiscard]] bool paused() const { return paused_; }
@@ -54,7 +54,7 @@ class SceneClock {
 
   /// Shifts the time, whether the clock is paused or not.
   void Shift(double seconds);
-  void Set(const UtcInstant& instant);
+  void Set(const UtcTime& instant);
   /// Jumps to the next occurrence of the event. Returns false and changes nothing if NextEvent
   /// finds none.
   bool JumpToNext(SkyEvent event, const GeodeticPosition& place);
@@ -64,14 +64,14 @@ class SceneClock {
   void Type(const std::string& text, const GeodeticPosition& place, const std::string& zone);
 
  private:
-  UtcInstant now_;
+  UtcTime now_;
   double rate_ = 1.0;
   bool paused_ = false;
 };
 
 class FlightController {
  public:
-  FlightController(const CameraPose& eye, const Ellipsoid& ellipsoid, const UtcInstant& start,
+  FlightController(const CameraPose& eye, const Ellipsoid& ellipsoid, const UtcTime& start,
                    GroundHeight ground)
       : ground_(std::move(ground)), pilot_(eye, ellipsoid), clock_(start) {}
 
@@ -112,7 +112,7 @@ class FlightController {
   void Advance(const PilotControls& controls, double seconds);
 
  private:
-  void AdvanceClock(const std::optional<UtcInstant>& before, double seconds);
+  void AdvanceClock(const std::optional<UtcTime>& before, double seconds);
   void EndReplay();
 
   GroundHeight ground_;

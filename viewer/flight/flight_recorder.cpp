@@ -71,7 +71,7 @@ std::optional<std::filesystem::path> FlightRecorder::file() const {
   return state_ && !state_->fault ? std::optional(state_->name) : std::nullopt;
 }
 
-void FlightRecorder::Record(double elapsed_s, const CameraPose& eye, const UtcInstant& now) {
+void FlightRecorder::Record(double elapsed_s, const CameraPose& eye, const UtcTime& now) {
   if (!state_ || state_->fault) return;
   if (state_->last_s && !IsDue(elapsed_s, *state_->last_s, kInterval_s)) return;
   if (!state_->begin_s) state_->begin_s = elapsed_s;
@@ -138,7 +138,7 @@ std::vector<CameraPathPoint> EverySecond(const std::vector<CameraPathPoint>& poi
 
 }  // namespace
 
-void FlightLog::Record(double elapsed_s, const CameraPose& eye, const UtcInstant& now) {
+void FlightLog::Record(double elapsed_s, const CameraPose& eye, const UtcTime& now) {
   last_ = CameraPathPoint{elapsed_s, eye, now};
   has_flown_ = has_flown_ || (!points_.empty() && points_.front().pose != eye);
   if (!points_.empty() && !IsDue(elapsed_s, points_.back().time_s, interval_s_)) return;

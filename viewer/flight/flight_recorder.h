@@ -43,7 +43,7 @@ class FlightRecorder {
   /// Records a point. The point is skipped if the last one is too recent. If the file cannot be
   /// written, one message reports it and the flight continues without recording.
   /// @param elapsed_s  since any fixed instant; times in the file start at the first point.
-  void Record(double elapsed_s, const CameraPose& eye, const UtcInstant& now);
+  void Record(double elapsed_s, const CameraPose& eye, const UtcTime& now);
 
   /// Returns the file that is being recorded; nullopt if there is none.
   [[nodiscard]] std::optional<std::filesystem::path> file() const;
@@ -67,7 +67,7 @@ class FlightRecorder {
 struct ReplayFrame {
   double path_s;
   CameraPose eye;
-  std::optional<UtcInstant> now;  // nullopt: the clock of the viewer continues
+  std::optional<UtcTime> now;  // nullopt: the clock of the viewer continues
 };
 [[nodiscard]] ReplayFrame ReplayAt(const CameraPath& path, double path_s);
 
@@ -85,7 +85,7 @@ class FlightLog {
   explicit FlightLog(std::size_t most_points = kMostPoints) : most_(most_points) {}
 
   /// @param elapsed_s  time of flight; it increases.
-  void Record(double elapsed_s, const CameraPose& eye, const UtcInstant& now);
+  void Record(double elapsed_s, const CameraPose& eye, const UtcTime& now);
 
   /// Returns the path from the first to the last Note; it starts at 0 s. Throws InputError if the
   /// eye has not moved.

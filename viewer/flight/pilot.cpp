@@ -319,7 +319,7 @@ double Pilot::time_factor() const {
                                         : 1.0;
 }
 
-std::optional<UtcInstant> Pilot::TrackUtc() const {
+std::optional<UtcTime> Pilot::TrackUtc() const {
   return mode_ == FlightMode::kTrack ? track_.Utc() : std::nullopt;
 }
 

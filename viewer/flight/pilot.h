@@ -130,7 +130,7 @@ class FollowedTrack {
   void Skip(double seconds);
   /// Return pose and time according to the path, which must exist; nullopt if it has no times.
   [[nodiscard]] CameraPose Pose() const { return path_->PoseAt(at_s_); }
-  [[nodiscard]] std::optional<UtcInstant> Utc() const { return path_->UtcAt(at_s_); }
+  [[nodiscard]] std::optional<UtcTime> Utc() const { return path_->UtcAt(at_s_); }
 
  private:
   std::shared_ptr<const CameraPath> path_;
@@ -194,7 +194,7 @@ class Pilot {
   /// Moves along the track, at most to its ends.
   void SkipTrack(double seconds) { track_.Skip(seconds); }
   /// Returns the time according to the track; nullopt in other modes.
-  [[nodiscard]] std::optional<UtcInstant> TrackUtc() const;
+  [[nodiscard]] std::optional<UtcTime> TrackUtc() const;
 
   void Zoom(double factor) { eye_ = Zoomed(eye_, factor); }
   void ResetView() { eye_.fov_rad = first_fov_rad_; }

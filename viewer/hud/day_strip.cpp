@@ -106,8 +106,7 @@ DayStrip MakeDayStrip(const DayStripRequest& request) {
   const Sky sky(request);
   const BendingAir refracting = GentleAirOf(request.multiple_scattering->medium());
   for (int x = 0; x < request.columns; ++x) {
-    const UtcInstant instant =
-        AddSeconds(request.begin, (x + 0.5) / request.columns * kSecondsPerDay);
+    const UtcTime instant = AddSeconds(request.begin, (x + 0.5) / request.columns * kSecondsPerDay);
     const SunPosition sun = ApparentSunAt(request.place, instant, refracting);
     strip.sun_elevation_rad.push_back(sun.elevation_rad);
     Column column;

@@ -23,7 +23,7 @@ namespace alpenglow::viewer {
 struct DayStripRequest {
   std::shared_ptr<const MultipleScattering> multiple_scattering;  // not null
   GeodeticPosition place;
-  UtcInstant begin;  // start of the 24 hours shown
+  UtcTime begin;     // start of the 24 hours shown
   int columns = 96;  // >= 2
 };
 
@@ -32,7 +32,7 @@ struct DayStrip {
   /// Display codes in [0, 1], row by row, the zenith first.
   std::vector<std::array<float, 3>> colours;
   std::vector<double> sun_elevation_rad;  // apparent, one per column
-  UtcInstant begin;
+  UtcTime begin;
 
   [[nodiscard]] const std::array<float, 3>& at(int column, int row) const {
     return colours[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +

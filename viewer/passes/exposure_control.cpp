@@ -38,15 +38,15 @@ void ExposureControl::Forget() {
   white_ = std::nullopt;
 }
 
-double ExposureControl::AdaptedTo(double metered_ev100, const UtcInstant& now, double seconds) {
+double ExposureControl::AdaptedTo(double metered_ev100, const UtcTime& now, double seconds) {
   if (rule_.kind != ExposureRule::Kind::kEye) return metered_ev100;
-  const UtcInstant before = adapted_at_.value_or(now);
+  const UtcTime before = adapted_at_.value_or(now);
   adapted_at_ = now;
   return adaptation_.Follow(metered_ev100,
                             std::max(seconds, std::abs(SecondsBetween(before, now))));
 }
 
-void ExposureControl::Follow(const MeterReading& metered, const UtcInstant& now, double seconds) {
+void ExposureControl::Follow(const MeterReading& metered, const UtcTime& now, double seconds) {
   if (!exposure_.locked) {
     const double wanted = Ev100By(rule_, AdaptedTo(metered.ev100, now, seconds), look_);
     exposure_.ev100 = AdaptedEv100(exposure_.ev100, wanted - exposure_.compensation_ev, seconds);

@@ -53,7 +53,7 @@ class ExposureControl {
 
   /// Adapts to a metered picture, `seconds` after the previous one.
   /// @param now  time of the scene: after a jump of an hour the eye has had an hour to adapt.
-  void Follow(const MeterReading& metered, const UtcInstant& now, double seconds);
+  void Follow(const MeterReading& metered, const UtcTime& now, double seconds);
   /// Records the exposure of a displayed picture that did not adapt.
   void Record(const Development& development) { exposure_.ev100 = development.ev100; }
   /// Forgets the previous picture, which is unrelated to the next one, so that nothing adapts to
@@ -77,14 +77,14 @@ class ExposureControl {
 
  private:
   /// Returns the EV for the current rule of exposure, after the adaptation of the eye.
-  [[nodiscard]] double AdaptedTo(double metered_ev100, const UtcInstant& now, double seconds);
+  [[nodiscard]] double AdaptedTo(double metered_ev100, const UtcTime& now, double seconds);
 
   ExposureRule rule_;
   Look look_;
   FlightExposure exposure_;
-  EyeAdaptation adaptation_;              // for the exposure rule `eye`
-  std::optional<UtcInstant> adapted_at_;  // time of the last adaptation
-  std::optional<WhiteBalance> white_;     // as displayed; nullopt before the first picture
+  EyeAdaptation adaptation_;           // for the exposure rule `eye`
+  std::optional<UtcTime> adapted_at_;  // time of the last adaptation
+  std::optional<WhiteBalance> white_;  // as displayed; nullopt before the first picture
 };
 
 }  // namespace alpenglow::viewer

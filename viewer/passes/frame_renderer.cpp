@@ -132,14 +132,14 @@ void FrameRenderer::ShowReference(const PaintedView& view, const ReferenceSource
 }
 
 // A clock at 3600 times real time passes these 900 s in a quarter of a second.
-bool FrameRenderer::HasJumped(const UtcInstant& now) {
+bool FrameRenderer::HasJumped(const UtcTime& now) {
   constexpr double kJump_s = 900.0;
-  const std::optional<UtcInstant> before = std::exchange(painted_at_, now);
+  const std::optional<UtcTime> before = std::exchange(painted_at_, now);
   return before && std::abs(SecondsBetween(*before, now)) > kJump_s;
 }
 
 // A picture that is unrelated to the previous one is metered at once.
-void FrameRenderer::Meter(bool is_another, const UtcInstant& now, double seconds) {
+void FrameRenderer::Meter(bool is_another, const UtcTime& now, double seconds) {
   const Look& look = exposure_.look();
   if (std::exchange(metered_for_, look.white) != look.white) metered_.reset();
   if (const std::optional<MeterReading> metered = meter_.Poll(look)) metered_ = metered;
@@ -150,7 +150,7 @@ void FrameRenderer::Meter(bool is_another, const UtcInstant& now, double seconds
   display_pass_.tone_map().Use(exposure_.ShownLook());
 }
 
-void FrameRenderer::Paint(const CameraPose& eye, const UtcInstant& now,
+void FrameRenderer::Paint(const CameraPose& eye, const UtcTime& now,
                           const ReferenceSource& reference, const ToneMapPass::Screen& screen,
                           double seconds) {
   const PaintedQuality wanted = quality_.painted();

@@ -77,7 +77,7 @@ class FrameRenderer {
   };
   /// Paints onto a screen with the exposure of the meter. `seconds` is the time since the previous
   /// frame.
-  void Paint(const CameraPose& eye, const UtcInstant& now, const ReferenceSource& reference,
+  void Paint(const CameraPose& eye, const UtcTime& now, const ReferenceSource& reference,
              const ToneMapPass::Screen& screen, double seconds);
   /// Records the time that the last frame took without the wait for the screen.
   void RecordFrame(double seconds) { quality_.Record(seconds); }
@@ -85,7 +85,7 @@ class FrameRenderer {
   [[nodiscard]] const RenderTarget& picture() const { return painter_.picture(); }
   /// Returns the sky of an eye (SkyPainter::SkyAt).
   [[nodiscard]] const std::shared_ptr<const FrameSky>& SkyAt(const GeodeticPosition& eye,
-                                                             const UtcInstant& now) {
+                                                             const UtcTime& now) {
     return painter_.SkyAt(eye, now);
   }
   /// Returns the luminance [cd/m^2] in a picture of one or two frames ago, at fractions of its
@@ -136,11 +136,11 @@ class FrameRenderer {
  private:
   [[nodiscard]] bool HasReference() const { return reference_ && reference_->samples() > 0; }
   /// Returns whether the clock has jumped by more than a quarter of an hour since the last frame.
-  [[nodiscard]] bool HasJumped(const UtcInstant& now);
+  [[nodiscard]] bool HasJumped(const UtcTime& now);
   void AimLandingLight(const CameraPose& eye);
   void CountRest(const CameraPose& eye, double seconds);
   void ShowReference(const PaintedView& view, const ReferenceSource& source);
-  void Meter(bool is_another, const UtcInstant& now, double seconds);
+  void Meter(bool is_another, const UtcTime& now, double seconds);
 
   SkyPainter& painter_;
   DisplayPass& display_pass_;
@@ -154,7 +154,7 @@ class FrameRenderer {
   SpotMeter spot_;
   std::optional<MeterReading> metered_;
   WhiteBalance metered_for_;  // as selected by the look of metered_
-  std::optional<UtcInstant> painted_at_;
+  std::optional<UtcTime> painted_at_;
   std::unique_ptr<ReferencePicture> reference_;
   std::shared_ptr<const ReferenceScene> reference_scene_;
   int reference_version_ = 0;

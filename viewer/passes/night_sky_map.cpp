@@ -24,9 +24,8 @@ void Upload(const GlTexture& map, int unit, int columns, int rows,
 
 }  // namespace
 
-NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now,
-                            const Medium& medium, const BandColour& colour,
-                            const SceneSkyglow& towns) {
+NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcTime& now, const Medium& medium,
+                            const BandColour& colour, const SceneSkyglow& towns) {
   const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
   std::optional<BandLight> town_light;
   if (towns.zenith) town_light = Skyglow(*towns.zenith, towns.ground_m, air, colour);

@@ -22,7 +22,7 @@ namespace alpenglow::viewer {
 /// Time, position, camera and size of a picture.
 struct PaintedView {
   CameraPose eye;
-  UtcInstant now;
+  UtcTime now;
   int width, height;                    // of this part [pixels]
   glm::dvec4 part{0.0, 0.0, 1.0, 1.0};  // part of the whole view, as in ViewOfTile
 };

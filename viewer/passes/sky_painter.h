@@ -95,7 +95,7 @@ class SkyPainter {
   [[nodiscard]] const PaintedScene& scene() const { return scene_; }
   /// Returns the sky of an eye in the current medium. All calls of a frame return the same object.
   [[nodiscard]] const std::shared_ptr<const FrameSky>& SkyAt(const GeodeticPosition& eye,
-                                                             const UtcInstant& now) {
+                                                             const UtcTime& now) {
     return sky_.At(eye, now, scene_.air().air());
   }
 

@@ -109,7 +109,7 @@ class StarPainter {
  private:
   struct Request {
     GeodeticPosition place;
-    UtcInstant now;
+    UtcTime now;
     std::shared_ptr<const BandColour> colour;
     std::shared_ptr<const SolvedAir> air;  // refracts their light
   };

@@ -183,7 +183,7 @@ class Besselian {
     return std::hypot(at(e_.x) - xi, at(e_.y) - eta) - radius;
   }
 
-  [[nodiscard]] UtcInstant InstantAt(double hours) const {
+  [[nodiscard]] UtcTime InstantAt(double hours) const {
     return AddSeconds(ParseInstant("2026-08-12T18:00:00Z"), hours * 3600.0 - delta_t_s_);
   }
 
@@ -196,7 +196,7 @@ class Besselian {
     return best;
   }
 
-  [[nodiscard]] UtcInstant Contact(bool is_outer, double from, double to) const {
+  [[nodiscard]] UtcTime Contact(bool is_outer, double from, double to) const {
     return InstantAt(
         BracketedRoot([&](double hours) { return Outside(hours, is_outer); }, from, to, 1e-6));
   }
@@ -272,7 +272,7 @@ TEST(Eclipse, MomentsComeInTheirOrderAndTheMaximumIsTheDeepest) {
 
 // The moon's shadow passes Cape Town by that day.
 TEST(Eclipse, IsNoneWhereTheShadowPassesByAndUnseenByNight) {
-  const UtcInstant day = ParseInstant("2026-08-12T00:00:00Z");
+  const UtcTime day = ParseInstant("2026-08-12T00:00:00Z");
   EXPECT_FALSE(FindSolarEclipse(PlaceFromDegrees(-33.9, 18.4, 0.0), day, 86400.0));
   const SolarEclipse& in_madrid = EclipseOf2026(7);
   EXPECT_TRUE(in_madrid.first_contact.IsSeen());
@@ -286,7 +286,7 @@ TEST(Eclipse, OtherNewMoonsOfTheYearPassTheSunBy) {
   const GeodeticPosition burgos = PlaceOf(kCities[3]);
   int eclipses = 0;
   for (int moon = -7; moon <= 4; ++moon) {
-    const UtcInstant start =
+    const UtcTime start =
         AddSeconds(ParseInstant("2026-08-11T06:00:00Z"), moon * 29.530589 * 86400.0);
     const auto eclipse = FindSolarEclipse(burgos, start, 3.0 * 86400.0);
     if (!eclipse) continue;

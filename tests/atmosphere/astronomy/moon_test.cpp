@@ -53,7 +53,7 @@ TEST(Moon, IsFullAndNewWhenAlmanacsSay) {
   // The total solar eclipse of 1999 August 11 is greatest at 11:03:04 UT at 45.1 N 24.3 E
   // (Espenak).
   const GeodeticPosition place = PlaceFromDegrees(45.0667, 24.2833, 0.0);
-  const UtcInstant instant = ParseInstant("1999-08-11T11:03:04Z");
+  const UtcTime instant = ParseInstant("1999-08-11T11:03:04Z");
   const MoonPosition moon = MoonAt(place, instant);
   const SunPosition sun = SunAt(place, instant);
   EXPECT_LT(glm::length(moon.direction.xyz - sun.direction.xyz), 25.0 * kArcsecond)
@@ -63,7 +63,7 @@ TEST(Moon, IsFullAndNewWhenAlmanacsSay) {
 }
 
 TEST(Moon, StandsLowerOverTheHorizonThanFromTheCentreOfTheEarth) {
-  const UtcInstant instant = ParseInstant("2026-06-21T20:00:00Z");
+  const UtcTime instant = ParseInstant("2026-06-21T20:00:00Z");
   const MoonPosition centre = MoonAt(kGeocentre, instant);
   // One place has the moon in the geocentric zenith, the other is a quarter of the earth away.
   const double longitude = std::atan2(centre.direction.xyz.y, centre.direction.xyz.x);
@@ -78,7 +78,7 @@ TEST(Moon, StandsLowerOverTheHorizonThanFromTheCentreOfTheEarth) {
 
 TEST(Moon, RefractionLiftsItAsItLiftsTheSun) {
   const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 500.0);
-  const UtcInstant instant = ParseInstant("2026-06-21T20:00:00Z");
+  const UtcTime instant = ParseInstant("2026-06-21T20:00:00Z");
   const MoonPosition bare = MoonAt(place, instant), seen = ApparentMoonAt(place, instant);
   EXPECT_EQ(seen.elevation_rad,
             bare.elevation_rad + RefractionFromHeight(AlmanacAir(), bare.elevation_rad, 500.0));
@@ -88,7 +88,7 @@ TEST(Moon, RefractionLiftsItAsItLiftsTheSun) {
 TEST(Moon, ItsBrightLimbPointsToTheSun) {
   const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 0.0);
   for (const char* utc : {"2026-06-18T19:00:00Z", "2026-06-25T19:00:00Z", "2026-07-07T04:00:00Z"}) {
-    const UtcInstant instant = ParseInstant(utc);
+    const UtcTime instant = ParseInstant(utc);
     const MoonPosition moon = MoonAt(place, instant);
     const glm::dvec3 sun = SunAt(place, instant).direction.xyz;
     const glm::dvec3 at = moon.direction.xyz;
@@ -104,12 +104,12 @@ TEST(Moon, ItsBrightLimbPointsToTheSun) {
 
 TEST(Moon, RisesAndSetsWhereItsUpperLimbMeetsTheHorizon) {
   const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 1200.0);
-  UtcInstant instant = ParseInstant("2026-06-01T00:00:00Z");
+  UtcTime instant = ParseInstant("2026-06-01T00:00:00Z");
   const double horizon =
       SeaHorizonFrom(1200.0, OsculatingRadius(kWgs84, place.latitude_rad)).true_elevation_rad;
   double gap_s = 0.0;
   for (int day = 0; day < 5; ++day) {
-    const UtcInstant rise = NextMoonrise(place, instant).value();
+    const UtcTime rise = NextMoonrise(place, instant).value();
     EXPECT_GT(SecondsBetween(instant, rise), 0.0);
     const MoonPosition moon = MoonAt(place, rise);
     EXPECT_NEAR(moon.elevation_rad + moon.angular_radius_rad, horizon, 1e-5) << "0.1 s";
@@ -122,11 +122,11 @@ TEST(Moon, RisesAndSetsWhereItsUpperLimbMeetsTheHorizon) {
 
 TEST(Moon, StaysUpOrDownForDaysNearThePole) {
   const GeodeticPosition place = PlaceFromDegrees(85.0, 20.0, 0.0);
-  const UtcInstant start = ParseInstant("2026-06-01T00:00:00Z");
+  const UtcTime start = ParseInstant("2026-06-01T00:00:00Z");
   double longest_up_s = 0.0, longest_down_s = 0.0;
-  for (UtcInstant instant = start; SecondsBetween(start, instant) < 28.0 * 86400.0;) {
-    const UtcInstant rise = NextMoonrise(place, instant).value();
-    const UtcInstant set = NextMoonset(place, rise).value();
+  for (UtcTime instant = start; SecondsBetween(start, instant) < 28.0 * 86400.0;) {
+    const UtcTime rise = NextMoonrise(place, instant).value();
+    const UtcTime set = NextMoonset(place, rise).value();
     longest_down_s = std::max(longest_down_s, SecondsBetween(instant, rise));
     longest_up_s = std::max(longest_up_s, SecondsBetween(rise, set));
     instant = set;

@@ -19,7 +19,7 @@ TEST(NightSky, AirglowIsLongerTheLowerOneLooksAndEndsAboveItsLayer) {
   EXPECT_DOUBLE_EQ(VanRhijn(0.0), 1.0);
   EXPECT_NEAR(VanRhijn(std::sin(Radians(40.0))), 1.29, 0.01) << "a plane layer would have 1.305";
   EXPECT_NEAR(VanRhijn(1.0), 6.04, 0.05) << "at the horizon sqrt(R / 2h) = 5.95, and a little";
-  const NightSky sky({}, {.modified_julian_day = 61212});
+  const NightSky sky({}, UtcTime{61212, 0.0});
   const glm::dvec3 up(0.0, 0.0, 1.0);
   EXPECT_GT(sky.Towards(up, up, 80e3).airglow_cd_per_m2, 0.0);
   EXPECT_EQ(sky.Towards(up, up, 400e3).airglow_cd_per_m2, 0.0);
@@ -51,7 +51,7 @@ TEST(NightSky, TheCentreOfTheGalaxyCulminatesOnJuneNights) {
   // zenith.
   const GeodeticPosition place{.latitude_rad = Radians(-29.0), .longitude_rad = 0.0};
   const glm::dvec3 up(0.0, 0.0, 1.0);
-  const UtcInstant noon = ParseInstant("2026-06-21T12:00:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T12:00:00Z");
   double brightest = 0.0;
   int hour_of_brightest = -1;
   for (int hour = 0; hour < 24; ++hour) {

@@ -33,7 +33,7 @@ Vector<Enu> DirectionTo(const SunPosition& sun) {
 }
 
 /// Returns how far the sun moves between two instants [arcseconds].
-double MotionOfSun(const GeodeticPosition& place, const UtcInstant& from, const UtcInstant& to) {
+double MotionOfSun(const GeodeticPosition& place, const UtcTime& from, const UtcTime& to) {
   return Separation(DirectionTo(SunAt(place, from)), DirectionTo(SunAt(place, to))) /
          kSunArcsecond_rad;
 }
@@ -112,7 +112,7 @@ TEST(Sun, DirectionAndAnglesSayTheSame) {
   for (const double latitude : {-90.0, -33.0, 0.0, 46.5, 90.0}) {
     for (int hour = 0; hour < 24; hour += 3) {
       const GeodeticPosition place = PlaceFromDegrees(latitude, 8.0, 500.0);
-      const SunPosition sun = SunAt(place, AddSeconds(UtcInstant{61041, 0.0}, 3600.0 * hour));
+      const SunPosition sun = SunAt(place, AddSeconds(UtcTime{61041, 0.0}, 3600.0 * hour));
       EXPECT_NEAR(glm::length(sun.direction.xyz), 1.0, 1e-15);
       const Vector<Enu> local = LocalFrame(kWgs84, place).EnuFromEcef(sun.direction);
       EXPECT_LT(Separation(local, DirectionTo(sun)), 1e-14);
@@ -147,7 +147,7 @@ TEST(Sun, IsLargestAtPerihelion) {
 
 // Hard case 27.
 TEST(Sun, AtAPoleElevationIsOneAndAzimuthsFollowTheLongitude) {
-  const UtcInstant instant = ParseInstant("2026-06-21T09:00:00Z");
+  const UtcTime instant = ParseInstant("2026-06-21T09:00:00Z");
   for (const double latitude : {-90.0, 90.0}) {
     const SunPosition a = SunAt(PlaceFromDegrees(latitude, 0.0, 0.0), instant);
     const SunPosition b = SunAt(PlaceFromDegrees(latitude, 120.0, 0.0), instant);
@@ -161,7 +161,7 @@ TEST(Sun, AtAPoleElevationIsOneAndAzimuthsFollowTheLongitude) {
 // Hard case 27.
 TEST(Sun, Longitudes180AndMinus180AreIdentical) {
   for (const double latitude : {-90.0, -16.5, 0.0, 65.0, 90.0}) {
-    const UtcInstant instant = ParseInstant("2026-02-11T20:17:00Z");
+    const UtcTime instant = ParseInstant("2026-02-11T20:17:00Z");
     const SunPosition east = SunAt(PlaceFromDegrees(latitude, 180.0, 10.0), instant);
     for (const GeodeticPosition& place :
          {PlaceFromDegrees(latitude, -180.0, 10.0),
@@ -194,7 +194,7 @@ TEST(Sun, MovesSteadilyInYearsThatErfaCallsDubious) {
   const GeodeticPosition place = PlaceFromDegrees(35.5, 138.8, 900.0);
   for (const char* text : {"1900-01-01T00:00:00Z", "1959-12-31T23:59:59Z", "2026-12-31T23:59:59Z",
                            "2100-12-31T23:59:58Z"}) {
-    const UtcInstant instant = ParseInstant(text);
+    const UtcTime instant = ParseInstant(text);
     EXPECT_NEAR(MotionOfSun(place, instant, AddSeconds(instant, 1.0)), 13.8, 0.1)
         << text << ": 15 arcseconds * cos 23";
   }
@@ -203,7 +203,7 @@ TEST(Sun, MovesSteadilyInYearsThatErfaCallsDubious) {
 TEST(Sun, FollowsTheRotationOfTheEarthNotOnlyTheClock) {
   // A second of delta-T moves the ephemeris, not the clock: 0.04 arcseconds, not 15.
   const GeodeticPosition place = PlaceFromDegrees(10.0, 20.0, 0.0);
-  const UtcInstant instant = ParseInstant("2026-06-21T12:00:00Z");
+  const UtcTime instant = ParseInstant("2026-06-21T12:00:00Z");
   EXPECT_LT(Separation(DirectionTo(SunAt(place, instant, 69.0)),
                        DirectionTo(SunAt(place, instant, 70.0))) /
                 kSunArcsecond_rad,
@@ -212,7 +212,7 @@ TEST(Sun, FollowsTheRotationOfTheEarthNotOnlyTheClock) {
 
 TEST(Sun, ClimbsUntilNoonAndSinksAfterwards) {
   const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 2000.0);
-  const UtcInstant noon =
+  const UtcTime noon =
       FindSunEvent(SunEvent::kNoon, place, ParseInstant("2026-04-18T12:00:00Z")).value();
   const auto elevation = [&](double time_s) {
     return SunAt(place, AddSeconds(noon, time_s)).elevation_rad;
@@ -349,8 +349,8 @@ struct PublishedEvent {
 void ExpectEvents(const GeodeticPosition& place, const std::vector<PublishedEvent>& published,
                   double tolerance_s, const char* why) {
   for (const auto& [event, time] : published) {
-    const UtcInstant expected = ParseInstant(time);
-    const std::optional<UtcInstant> found = FindSunEvent(event, place, expected);
+    const UtcTime expected = ParseInstant(time);
+    const std::optional<UtcTime> found = FindSunEvent(event, place, expected);
     ASSERT_TRUE(found.has_value()) << time;
     EXPECT_NEAR(SecondsBetween(expected, *found), 0.0, tolerance_s) << time << ": " << why;
   }
@@ -398,9 +398,9 @@ TEST(SunEvents, FollowEachOtherThroughTheDay) {
     for (const char* day :
          {"2026-03-20T12:00:00Z", "2026-06-21T00:00:00Z", "2026-12-21T23:59:59Z"}) {
       const GeodeticPosition place = PlaceFromDegrees(latitude, longitude, 300.0);
-      std::optional<UtcInstant> before;
+      std::optional<UtcTime> before;
       for (const SunEvent event : kInOrder) {
-        const std::optional<UtcInstant> found = FindSunEvent(event, place, ParseInstant(day));
+        const std::optional<UtcTime> found = FindSunEvent(event, place, ParseInstant(day));
         ASSERT_TRUE(found.has_value()) << latitude << " " << longitude << " " << day;
         EXPECT_GT(before ? SecondsBetween(*before, *found) : 1e3, 600.0) << latitude << day;
         before = found;
@@ -414,7 +414,7 @@ TEST(SunEvents, EveryInstantOfASolarDayFindsTheSameEvents) {
   const auto sunrise = [&](const char* around) {
     return FindSunEvent(SunEvent::kSunrise, place, ParseInstant(around)).value();
   };
-  const UtcInstant first = sunrise("2026-06-21T04:00:00Z");
+  const UtcTime first = sunrise("2026-06-21T04:00:00Z");
   EXPECT_EQ(FormatInZone(first, "Asia/Tokyo").substr(0, 13), "2026-06-21T04");
   for (const char* text :
        {"2026-06-20T14:50:00Z", "2026-06-20T18:00:00Z", "2026-06-21T14:40:00Z"}) {
@@ -429,7 +429,7 @@ TEST(SunEvents, SearchIsWithinATenthOfASecond) {
     const GeodeticPosition place = PlaceFromDegrees(latitude, 25.0, 900.0);
     const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad);
     const double target = SeaHorizonFrom(place.height_m, radius_m).true_elevation_rad;
-    const UtcInstant found =
+    const UtcTime found =
         FindSunEvent(SunEvent::kSunrise, place, ParseInstant("2026-03-01T12:00:00Z")).value();
     const auto above = [&](double offset_s) {
       const SunPosition sun = SunAt(place, AddSeconds(found, offset_s));
@@ -442,7 +442,7 @@ TEST(SunEvents, SearchIsWithinATenthOfASecond) {
 
 TEST(SunEvents, AtSunriseTheUpperLimbIsSeenOnTheSea) {
   const GeodeticPosition place = PlaceFromDegrees(35.36, 138.73, 3776.0);
-  const UtcInstant sunrise =
+  const UtcTime sunrise =
       FindSunEvent(SunEvent::kSunrise, place, ParseInstant("2026-01-01T00:00:00Z")).value();
   const SunPosition sun = SunAt(place, sunrise);
   const double limb = sun.elevation_rad + sun.angular_radius_rad;
@@ -510,7 +510,7 @@ TEST(SunEvents, AtThePolesTheSunRisesOnceAYear) {
   for (const double latitude : {-90.0, 90.0}) {
     int sunrises = 0, sunsets = 0;
     for (int day = 0; day < 16; ++day) {  // 12 to 27 March
-      const UtcInstant around = AddSeconds(ParseInstant("2026-03-12T12:00:00Z"), 86400.0 * day);
+      const UtcTime around = AddSeconds(ParseInstant("2026-03-12T12:00:00Z"), 86400.0 * day);
       const GeodeticPosition pole = PlaceFromDegrees(latitude, 0.0, 0.0);
       sunrises += FindSunEvent(SunEvent::kSunrise, pole, around).has_value() ? 1 : 0;
       sunsets += FindSunEvent(SunEvent::kSunset, pole, around).has_value() ? 1 : 0;
@@ -529,7 +529,7 @@ TEST(SunEvents, AroundTheMidnightSunNothingIsMissedOrInvented) {
   int days_with = 0;
   constexpr int kDays = 8;
   for (int day = 0; day < kDays; ++day) {
-    const UtcInstant midnight = AddSeconds(ParseInstant("2026-05-13T00:00:00Z"), 86400.0 * day);
+    const UtcTime midnight = AddSeconds(ParseInstant("2026-05-13T00:00:00Z"), 86400.0 * day);
     const auto above = [&](double time_s) {
       const SunPosition sun = SunAt(place, AddSeconds(midnight, time_s));
       return sun.elevation_rad + sun.angular_radius_rad > target;
@@ -542,7 +542,7 @@ TEST(SunEvents, AroundTheMidnightSunNothingIsMissedOrInvented) {
       sets = sets || (!is_above && was_above);
       was_above = is_above;
     }
-    const UtcInstant noon = AddSeconds(midnight, 43200.0);
+    const UtcTime noon = AddSeconds(midnight, 43200.0);
     EXPECT_EQ(FindSunEvent(SunEvent::kSunrise, place, noon).has_value(), rises) << day;
     EXPECT_EQ(FindSunEvent(SunEvent::kSunset, place, noon).has_value(), sets) << day;
     days_with += rises ? 1 : 0;
@@ -553,7 +553,7 @@ TEST(SunEvents, AroundTheMidnightSunNothingIsMissedOrInvented) {
 
 // Hard case 27.
 TEST(SunEvents, Longitudes180AndMinus180AreIdentical) {
-  const UtcInstant around = ParseInstant("2026-06-21T12:00:00Z");
+  const UtcTime around = ParseInstant("2026-06-21T12:00:00Z");
   for (const SunEvent event : kInOrder) {
     const auto east = FindSunEvent(event, PlaceFromDegrees(-16.5, 180.0, 0.0), around);
     EXPECT_EQ(east, FindSunEvent(event, PlaceFromDegrees(-16.5, -180.0, 0.0), around));
@@ -565,8 +565,8 @@ TEST(SunEvents, NoonsAreADayApartUpToTheEquationOfTime) {
   const GeodeticPosition place = PlaceFromDegrees(51.48, 0.0, 0.0);
   double earliest_s = 86400.0, latest_s = 0.0;
   for (int day = 0; day < 365; day += 5) {
-    const UtcInstant around = AddSeconds(ParseInstant("2026-01-01T12:00:00Z"), 86400.0 * day);
-    const UtcInstant noon = FindSunEvent(SunEvent::kNoon, place, around).value();
+    const UtcTime around = AddSeconds(ParseInstant("2026-01-01T12:00:00Z"), 86400.0 * day);
+    const UtcTime noon = FindSunEvent(SunEvent::kNoon, place, around).value();
     EXPECT_EQ(noon.modified_julian_day, around.modified_julian_day);
     earliest_s = std::min(earliest_s, noon.second_of_day);
     latest_s = std::max(latest_s, noon.second_of_day);

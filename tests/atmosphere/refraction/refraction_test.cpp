@@ -287,7 +287,7 @@ TEST(Refraction, FromAnyHeightItIsContinuousAndKeepsTheOrder) {
 }
 
 TEST(ApparentSun, IsHigherThanTheSunByRefractionAtTheEye) {
-  const UtcInstant evening = ParseInstant("2026-06-21T18:50:00Z");
+  const UtcTime evening = ParseInstant("2026-06-21T18:50:00Z");
   for (const double height_m : {0.0, 10e3}) {
     const GeodeticPosition eye = PlaceFromDegrees(47.0, 8.0, height_m);
     const SunPosition sun = SunAt(eye, evening), apparent = ApparentSunAt(eye, evening);
@@ -412,7 +412,7 @@ TEST(SunForAir, IsRaisedByTheLiftForAirAtAnyHeight) {
     const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, height_m);
     for (const char* time :
          {"2026-06-21T11:00:00Z", "2026-06-21T19:22:00Z", "2026-06-21T20:20:00Z"}) {
-      const UtcInstant now = ParseInstant(time);
+      const UtcTime now = ParseInstant(time);
       const SunPosition truly = SunAt(eye, now), seen = ApparentSunAt(eye, now);
       EXPECT_NEAR(SunForAir(seen).elevation_rad,
                   truly.elevation_rad + LiftForAir(AlmanacAir(), truly.elevation_rad), 1e-12)

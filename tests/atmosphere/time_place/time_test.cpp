@@ -24,7 +24,7 @@ std::string FaultOfInstant(std::string_view text,
 
 // Hard case 25.
 TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
-  const UtcInstant expected{61212, 4 * 3600.0};
+  const UtcTime expected{61212, 4 * 3600.0};
   EXPECT_EQ(ParseInstant("2026-06-21T04:00:00Z"), expected) << "MJD 61212 is 2026-06-21";
   EXPECT_EQ(ParseInstant("2026-06-21T13:00:00+09:00"), expected);
   EXPECT_EQ(ParseInstant("2026-06-20T18:30:00-09:30"), expected);
@@ -33,7 +33,7 @@ TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
   EXPECT_EQ(ParseInstant("2026-06-21t04:00:00z"), expected) << "RFC 3339, 5.6";
   EXPECT_EQ(ParseInstant("2026-06-21T13:00:00", "Asia/Tokyo"), expected);
   EXPECT_EQ(ParseInstant("2026-06-21T04:00:00Z", "Asia/Tokyo"), expected) << "the text decides";
-  EXPECT_EQ(ParseInstant("2000-01-01T12:00:00Z"), (UtcInstant{51544, 43200.0})) << "J2000";
+  EXPECT_EQ(ParseInstant("2000-01-01T12:00:00Z"), (UtcTime{51544, 43200.0})) << "J2000";
   EXPECT_EQ(ParseInstant("2024-02-29T00:00:00Z").modified_julian_day, 60369);
   EXPECT_NEAR(ParseInstant("2026-06-21T04:00:30.125Z").second_of_day, 14430.125, 1e-9);
   EXPECT_NEAR(ParseInstant("2026-06-21T04:00:30,125Z").second_of_day, 14430.125, 1e-9)
@@ -109,15 +109,15 @@ TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
 
 // Hard case 25.
 TEST(Time, TheLeapSecondOf2016Exists) {
-  const UtcInstant leap = ParseInstant("2016-12-31T23:59:60Z");
-  EXPECT_EQ(leap, (UtcInstant{57753, 86400.0}));
+  const UtcTime leap = ParseInstant("2016-12-31T23:59:60Z");
+  EXPECT_EQ(leap, (UtcTime{57753, 86400.0}));
   EXPECT_EQ(ParseInstant("2017-01-01T08:59:60+09:00"), leap);
   EXPECT_EQ(ParseInstant("2017-01-01T08:59:60", "Asia/Tokyo"), leap);
   EXPECT_EQ(FormatUtc(leap), "2016-12-31T23:59:60Z");
   EXPECT_EQ(FormatUtc(ParseInstant("2016-12-31T23:59:60.75Z"), 2), "2016-12-31T23:59:60.75Z");
   EXPECT_EQ(FormatInZone(leap, "Asia/Tokyo"), "2017-01-01T08:59:60+09:00");
   EXPECT_EQ(AddSeconds(leap, 0.0), leap);
-  EXPECT_EQ(AddSeconds(leap, 1.0), (UtcInstant{57754, 1.0})) << "clocks do not count it";
+  EXPECT_EQ(AddSeconds(leap, 1.0), (UtcTime{57754, 1.0})) << "clocks do not count it";
   EXPECT_EQ(DayLength(57753), 86401.0);
   EXPECT_EQ(DayLength(57752), 86400.0);
 }
@@ -196,7 +196,7 @@ TEST(Time, RulesOfZoneFilesAreUnderstood) {
 }
 
 TEST(Time, LocalMeanTimeWithSecondsSurvivesTheRoundTrip) {
-  const UtcInstant instant = ParseInstant("1950-06-01T12:00:00Z");
+  const UtcTime instant = ParseInstant("1950-06-01T12:00:00Z");
   const std::string text = FormatInZone(instant, "Africa/Monrovia");
   EXPECT_EQ(text, "1950-06-01T11:15:30-00:44:30") << "Liberia until 1972";
   EXPECT_EQ(ParseInstant(text), instant);
@@ -217,7 +217,7 @@ TEST(Time, FormattingRoundsAndCarries) {
 TEST(Time, FormattedInstantsAreReadBack) {
   for (int day = 15020; day <= 88433; day += 911) {
     for (const double second : {0.0, 1.0, 43199.0, 86399.0}) {
-      const UtcInstant instant{day, second};
+      const UtcTime instant{day, second};
       EXPECT_EQ(ParseInstant(FormatUtc(instant)), instant);
       if (day > 15020) {
         EXPECT_EQ(ParseInstant(FormatInZone(instant, "Europe/Zurich")), instant);
@@ -227,12 +227,12 @@ TEST(Time, FormattedInstantsAreReadBack) {
 }
 
 TEST(Time, AddingSecondsIsUndoneByAddingTheirNegative) {
-  const UtcInstant instant{61212, 14400.0};
-  EXPECT_EQ(AddSeconds(instant, 86400.0 * 365), (UtcInstant{61577, 14400.0}));
-  EXPECT_EQ(AddSeconds(instant, -14400.5), (UtcInstant{61211, 86399.5}));
-  EXPECT_EQ(AddSeconds({61212, 0.0}, -1e-20), (UtcInstant{61212, 0.0})) << "never 86400.0";
+  const UtcTime instant{61212, 14400.0};
+  EXPECT_EQ(AddSeconds(instant, 86400.0 * 365), (UtcTime{61577, 14400.0}));
+  EXPECT_EQ(AddSeconds(instant, -14400.5), (UtcTime{61211, 86399.5}));
+  EXPECT_EQ(AddSeconds({61212, 0.0}, -1e-20), (UtcTime{61212, 0.0})) << "never 86400.0";
   for (const double step : {-1e7, -86400.0, -0.25, 0.5, 3600.0, 12345678.5}) {
-    const UtcInstant moved = AddSeconds(instant, step);
+    const UtcTime moved = AddSeconds(instant, step);
     EXPECT_EQ(SecondsBetween(instant, moved), step);
     EXPECT_EQ(AddSeconds(moved, -step), instant);
     EXPECT_GE(moved.second_of_day, 0.0);
@@ -285,7 +285,7 @@ TEST(Time, DeltaTHasNoJumpWhereModelsMeet) {
        {"1920-01-01T12:00:00Z", "1941-01-01T00:00:00Z", "1950-01-01T00:00:00Z",
         "1960-01-01T00:00:00Z", "2027-01-01T00:00:00Z", "2050-01-01T00:00:00Z"}) {
     for (int day = -3; day < 3; ++day) {
-      const UtcInstant before = AddSeconds(ParseInstant(text), 86400.0 * day);
+      const UtcTime before = AddSeconds(ParseInstant(text), 86400.0 * day);
       EXPECT_NEAR(DeltaT(AddSeconds(before, 86400.0)), DeltaT(before), 0.02)
           << text << ": a day changes it by 0.008 s at most; the polynomials of 1920 and 1941 miss "
           << "each other by 0.012 s";

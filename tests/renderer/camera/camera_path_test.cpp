@@ -22,7 +22,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const UtcInstant kStart = ParseInstant("2026-06-21T04:00:00Z");
+const UtcTime kStart = ParseInstant("2026-06-21T04:00:00Z");
 
 CameraPathPoint PointAt(double time_s, double latitude, double longitude, double height_m,
                         double heading, double pitch = 0.0) {
@@ -316,7 +316,7 @@ TEST(TrackPath, ATrackWithoutHeightsFollowsTheGround) {
 /// @param points  longitude [degrees] and time [s].
 Track Eastward(const std::vector<std::pair<double, double>>& points) {
   Track track;
-  const UtcInstant start = ParseInstant("2026-06-21T10:00:00Z");
+  const UtcTime start = ParseInstant("2026-06-21T10:00:00Z");
   for (const auto& [longitude, time_s] : points)
     track.points.push_back({PlaceFromDegrees(0.0, longitude, 3500.0), AddSeconds(start, time_s)});
   return track;
@@ -364,7 +364,7 @@ TEST(TrackPath, SparseFixesArePassedOnceAndAtTheirTimes) {
 
 TEST(TrackPath, GoesStraightAndEvenlyThroughAGap) {
   Track track = Eastward({{8.0, 0.0}, {8.01, 60.0}, {8.02, 120.0}});
-  const UtcInstant later = AddSeconds(*track.points[0].utc, 1120.0);
+  const UtcTime later = AddSeconds(*track.points[0].utc, 1120.0);
   track.points.push_back({PlaceFromDegrees(0.1, 8.02, 3500.0), later, 1});
   track.points.push_back({PlaceFromDegrees(0.1, 8.01, 3500.0), AddSeconds(later, 60.0), 1});
   const CameraPath path = PathAlong(track, {}, Sea);

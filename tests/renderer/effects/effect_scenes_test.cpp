@@ -55,7 +55,7 @@ class RenderedScene {
   }
 
  private:
-  UtcInstant instant_;
+  UtcTime instant_;
   SceneRenderer renderer_;
   std::map<EffectSet, Image> pictures_;
   std::map<double, ChosenPicture> chosen_;
@@ -176,7 +176,7 @@ TEST_F(SceneNeeds, OnlyFourBandsByDay) {
   Scene scene = BareScene(2.0, 180.0, 10.0, 60.0);
   scene.medium = MediumPreset("earth", WavelengthSet(6));
   const SceneRenderer renderer(scene);
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const ChosenPicture chosen = renderer.RenderWithin(noon, kSmall, {.max_error = 0.05});
   EXPECT_TRUE(chosen.choice.LeftOut().Has(Effect::kFineSpectrum));
   EXPECT_LE(ChangeOf(renderer.Render(noon, kSmall), chosen.image).Rms(), 0.05);

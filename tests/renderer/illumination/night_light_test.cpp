@@ -281,7 +281,7 @@ TEST(DarkSun, IsOmittedWhereItIsLessThanTheErrorOfTheTables) {
   for (const Effect effect : {Effect::kMoonlight, Effect::kNightSky, Effect::kStars})
     of_sun.effects = of_sun.effects.Without(effect);
   const auto luminances = [&](int minute, const RenderSettings& with) {
-    const UtcInstant at = AddSeconds(ParseInstant("2026-01-17T17:30:00Z"), 60.0 * minute);
+    const UtcTime at = AddSeconds(ParseInstant("2026-01-17T17:30:00Z"), 60.0 * minute);
     std::vector<double> values;
     for (const auto& rgb : renderer.Render(at, with).rgb) values.push_back(tests::Luminance(rgb));
     return values;

@@ -49,7 +49,7 @@ struct MediaStage {
   Lighting light = [this] {
     SunPosition sun;
     sun.distance_au = 1.0;
-    Lighting at = LightingOf(sun, UtcInstant{}, {.latitude_rad = 0.8}, medium);
+    Lighting at = LightingOf(sun, UtcTime{60000, 0.0}, {.latitude_rad = 0.8}, medium);
     at.source.direction = Unrefracted(kToSun);
     at.source.radius_rad = 0.00465;
     return at;
@@ -351,8 +351,8 @@ TEST(MediaLight, FogSeenFromSpaceIsThatSeenFromTheTopOfTheAir) {
 }
 
 const RenderSettings kSmallMedia{.width = 24, .height = 14, .samples_per_pixel = 1, .layers = {}};
-const UtcInstant kMediaNoon = ParseInstant("2026-06-21T10:00:00Z");
-const UtcInstant kMediaNight = ParseInstant("2026-01-01T00:00:00Z");
+const UtcTime kMediaNoon = ParseInstant("2026-06-21T10:00:00Z");
+const UtcTime kMediaNight = ParseInstant("2026-01-01T00:00:00Z");
 
 Scene WithoutVolume() {
   Scene scene = QuickScene(50.0, 0.0, 0.0, 40.0);
@@ -362,7 +362,7 @@ Scene WithoutVolume() {
 MediumLayer FogIn(double extinction_per_m, double scale_height_m, double albedo = 1.0) {
   return {extinction_per_m, scale_height_m, 0.0, albedo, FogPhase(12.0)};
 }
-Image Rendered(const Scene& scene, const UtcInstant& instant,
+Image Rendered(const Scene& scene, const UtcTime& instant,
                const RenderSettings& settings = kSmallMedia) {
   return SceneRenderer(scene).Render(instant, settings);
 }

@@ -60,7 +60,7 @@ TEST(Golden, PicturesAreTheStoredOnes) {
     EXPECT_LE(fs::file_size(stored), 20000U) << "goldens are small";
     const Image image = ReadExr(stored);
     const Scene scene = ReadScene(kFolder / golden.scene);
-    const UtcInstant instant = InstantFromText(golden.time, {scene.place, scene.zone, scene.time});
+    const UtcTime instant = InstantFromText(golden.time, {scene.place, scene.zone, scene.time});
     RenderSettings settings;
     settings.width = image.width;
     settings.height = image.height;

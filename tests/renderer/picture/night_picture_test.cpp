@@ -18,9 +18,9 @@
 namespace alpenglow::renderer {
 namespace {
 
-const UtcInstant kMoonless = ParseInstant("2026-01-17T22:00:00Z");  // new moon: January 18, 19:52
-const UtcInstant kFullMoon = ParseInstant("2026-12-24T00:30:00Z");  // full: 01:28
-const UtcInstant kNoon = ParseInstant("2026-06-21T11:30:00Z");
+const UtcTime kMoonless = ParseInstant("2026-01-17T22:00:00Z");  // new moon: January 18, 19:52
+const UtcTime kFullMoon = ParseInstant("2026-12-24T00:30:00Z");  // full: 01:28
+const UtcTime kNoon = ParseInstant("2026-06-21T11:30:00Z");
 
 constexpr EffectSet kOfNight{Effect::kMoonlight, Effect::kNightSky, Effect::kStars};
 
@@ -52,7 +52,7 @@ struct StarView {
 };
 
 /// Returns the direction of Sirius at the place of BareScene.
-StarView SiriusAt(const UtcInstant& instant) {
+StarView SiriusAt(const UtcTime& instant) {
   const LocalFrame frame(kWgs84, PlaceFromDegrees(46.5, 8.0, 2.0));
   const glm::dvec3 enu = frame.EnuFromEcef(StarsAt(instant).front().direction).xyz;
   return {std::atan2(enu.x, enu.y) / kRadiansPerDegree, std::asin(enu.z) / kRadiansPerDegree};
@@ -172,7 +172,7 @@ TEST(NightPicture, MoonlitGroundHasTheLuminanceOfItsLux) {
 
 TEST(NightPicture, AMoonlitSkyIsLessBlueThanASunlitOne) {
   const SceneRenderer renderer(QuickScene(2.0, 0.0, 60.0, 30.0));
-  const auto blue_by_red = [&](const UtcInstant& instant, EffectSet without) {
+  const auto blue_by_red = [&](const UtcTime& instant, EffectSet without) {
     const auto rgb = renderer.Render(instant, Small(1, 1, Without(without))).at(0, 0);
     return static_cast<double>(rgb[2] / rgb[0]);
   };
@@ -212,7 +212,7 @@ TEST(NightPicture, DuskFallsWithoutAStepWhereTheMoonBegins) {
 }
 
 /// Returns a small picture of the night sky around a direction.
-Image NightAround(double azimuth_rad, double elevation_rad, const UtcInstant& instant) {
+Image NightAround(double azimuth_rad, double elevation_rad, const UtcTime& instant) {
   const Scene scene =
       QuickScene(2.0, azimuth_rad / kRadiansPerDegree, elevation_rad / kRadiansPerDegree, 2.0);
   RenderSettings settings;
@@ -246,13 +246,13 @@ Bright BrightOf(const Image& image) {
 }
 
 /// Returns the moon at the place of BareScene.
-MoonPosition MoonOver(const UtcInstant& instant) {
+MoonPosition MoonOver(const UtcTime& instant) {
   return ApparentMoonAt(PlaceFromDegrees(46.5, 8.0, 2.0), instant);
 }
 
 TEST(MoonPicture, TheFullMoonHasItsPlaceAndBrightness) {
   // The moon is full on 2026 June 29 at 23:57 UT.
-  const UtcInstant instant = ParseInstant("2026-06-29T23:30:00Z");
+  const UtcTime instant = ParseInstant("2026-06-29T23:30:00Z");
   const MoonPosition moon = MoonOver(instant);
   ASSERT_GT(moon.elevation_rad, 10.0 * kRadiansPerDegree);
   const Bright bright = BrightOf(NightAround(moon.azimuth_rad, moon.elevation_rad, instant));
@@ -267,7 +267,7 @@ TEST(MoonPicture, TheFullMoonHasItsPlaceAndBrightness) {
 
 TEST(MoonPicture, TheHalfMoonOfAnEveningIsLitOnItsRight) {
   // The first quarter is on 2026 June 21 at 21:55 UT.
-  const UtcInstant instant = ParseInstant("2026-06-21T20:30:00Z");
+  const UtcTime instant = ParseInstant("2026-06-21T20:30:00Z");
   const MoonPosition moon = MoonOver(instant);
   ASSERT_GT(moon.elevation_rad, 5.0 * kRadiansPerDegree);
   const Bright bright = BrightOf(NightAround(moon.azimuth_rad, moon.elevation_rad, instant));
@@ -301,7 +301,7 @@ CameraPose Towards(double heading, double pitch, double fov) {
   return {Burgos(), camera.heading_rad, camera.pitch_rad, 0.0, camera.fov_rad};
 }
 
-Image EclipseRendered(const CameraPose& pose, const UtcInstant& instant, int size, int rays,
+Image EclipseRendered(const CameraPose& pose, const UtcTime& instant, int size, int rays,
                       Moon moon = Moon::kThere) {
   RenderSettings settings;
   settings.width = settings.height = size;
@@ -317,19 +317,19 @@ double Mean(const Image& image, std::size_t channel) {
   return sum / static_cast<double>(image.rgb.size());
 }
 
-double Left(const UtcInstant& instant, double wavelength_nm) {
+double Left(const UtcTime& instant, double wavelength_nm) {
   return UncoveredLight(EclipseAt(Burgos(), instant).disk, wavelength_nm);
 }
 
 /// Returns the view of a camera at Burgos that looks at the sun.
-CameraPose TowardsSun(const UtcInstant& instant, double fov) {
+CameraPose TowardsSun(const UtcTime& instant, double fov) {
   const SunPosition sun = ApparentSunAt(Burgos(), instant);
   return Towards(sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree, fov);
 }
 
 // Nine tenths of the sun are covered. Higher orders of scattering and the ground are included.
 TEST(EclipsePicture, SkyIsDarkerByTheLightThatTheMoonCovers) {
-  const UtcInstant instant = ParseInstant("2026-08-12T18:23:00Z");
+  const UtcTime instant = ParseInstant("2026-08-12T18:23:00Z");
   const CameraPose pose = Towards(100.0, 10.0, 60.0);
   const Image eclipsed = EclipseRendered(pose, instant, 24, 1);
   const Image whole = EclipseRendered(pose, instant, 24, 1, Moon::kAbsent);
@@ -344,7 +344,7 @@ TEST(EclipsePicture, SkyIsDarkerByTheLightThatTheMoonCovers) {
 // The light of the disk in the picture is that on the land.
 TEST(EclipsePicture, LightOfTheCrescentIsThatOfTheUncoveredSun) {
   for (const char* utc : {"2026-08-12T17:50:00Z", "2026-08-12T18:23:00Z"}) {
-    const UtcInstant instant = ParseInstant(utc);
+    const UtcTime instant = ParseInstant(utc);
     const CameraPose pose = TowardsSun(instant, 0.7);
     const double share = Mean(EclipseRendered(pose, instant, 64, 16), 1) /
                          Mean(EclipseRendered(pose, instant, 64, 16, Moon::kAbsent), 1);
@@ -355,7 +355,7 @@ TEST(EclipsePicture, LightOfTheCrescentIsThatOfTheUncoveredSun) {
 
 TEST(EclipsePicture, TheCrescentFacesAwayFromTheMoon) {
   for (const char* utc : {"2026-08-12T17:50:00Z", "2026-08-12T18:10:00Z", "2026-08-12T18:40:00Z"}) {
-    const UtcInstant instant = ParseInstant(utc);
+    const UtcTime instant = ParseInstant(utc);
     const SunPosition sun = ApparentSunAt(Burgos(), instant);
     const MoonPosition moon = ApparentMoonAt(Burgos(), instant);
     const Image image = EclipseRendered(TowardsSun(instant, 0.7), instant, 64, 4);
@@ -375,7 +375,7 @@ TEST(EclipsePicture, TheCrescentFacesAwayFromTheMoon) {
 }
 
 TEST(EclipsePicture, TotalityIsDarkAndFinite) {
-  const UtcInstant middle = ParseInstant("2026-08-12T18:29:40Z");
+  const UtcTime middle = ParseInstant("2026-08-12T18:29:40Z");
   ASSERT_EQ(Left(middle, 550.0), 0.0);
   const SunPosition sun = ApparentSunAt(Burgos(), middle);
   const CameraPose pose = Towards(sun.azimuth_rad / kRadiansPerDegree, 20.0, 60.0);

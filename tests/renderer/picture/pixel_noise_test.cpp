@@ -71,7 +71,7 @@ TEST(RaysForNoise, GrowInPowersOfTwoUntilTheNoiseIsReached) {
   }
 }
 
-const UtcInstant kEvening = ParseInstant("2026-06-21T17:40:00Z");
+const UtcTime kEvening = ParseInstant("2026-06-21T17:40:00Z");
 
 class NoisyPicture : public TemporaryFolder {
  protected:

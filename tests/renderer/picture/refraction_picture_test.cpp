@@ -36,7 +36,7 @@ using RefractedTerrain = TemporaryFolder;
 
 constexpr double kArcminute = kRadiansPerDegree / 60.0;
 constexpr double kTolerance = 0.1 * kArcminute;
-const UtcInstant kRefractedNoon = ParseInstant("2026-06-21T11:30:00Z");
+const UtcTime kRefractedNoon = ParseInstant("2026-06-21T11:30:00Z");
 
 /// Returns the true elevation of a body that is seen at an apparent one.
 double TrueElevation(const Medium& medium, double apparent_rad, double height_m) {
@@ -50,7 +50,7 @@ TEST(RefractedPlaces, TheSunIsWhereTheRayEquationSays) {
     const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, height_m);
     int seen = 0;
     for (int minutes = 0; minutes < 60; minutes += 6) {
-      const UtcInstant instant = AddSeconds(ParseInstant("2026-06-21T18:26:00Z"), 60.0 * minutes);
+      const UtcTime instant = AddSeconds(ParseInstant("2026-06-21T18:26:00Z"), 60.0 * minutes);
       CameraSample camera_sample(instant);
       camera_sample.poses = {{eye, 0.0, 0.0, 0.0, 1.0}};
       const double apparent = renderer.ApparentSun(camera_sample).elevation_rad;
@@ -67,7 +67,7 @@ TEST(RefractedPlaces, TheSunIsWhereTheRayEquationSays) {
 
 TEST(RefractedPlaces, StarsAreWhereTheRayEquationSays) {
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), 46.5 * kRadiansPerDegree);
-  const UtcInstant instant = ParseInstant("2026-01-15T22:00:00Z");
+  const UtcTime instant = ParseInstant("2026-01-15T22:00:00Z");
   const BandColour colour(medium.wavelengths_nm);
   constexpr double kFaintest = 4.5;
   for (const double height_m : {2.0, 3000.0}) {
@@ -95,7 +95,7 @@ TEST(RefractedPlaces, StarsAreWhereTheRayEquationSays) {
 TEST(RefractedPlaces, OnMarsAlmostNothingIsLifted) {
   Scene scene = QuickScene(2.0, 0.0, 0.0, 60.0);
   scene.medium = MediumPreset("mars");
-  const UtcInstant evening = ParseInstant("2026-06-21T19:15:00Z");
+  const UtcTime evening = ParseInstant("2026-06-21T19:15:00Z");
   const SunPosition sun = tests::SunSeenIn(scene, evening);
   EXPECT_NEAR(sun.elevation_rad, SunAt(PlaceFromDegrees(46.5, 8.0, 2.0), evening).elevation_rad,
               1.0 * kArcminute);
@@ -146,7 +146,7 @@ void ExpectFlat(const std::function<double(EffectSet effects)>& area_of_circle, 
 
 TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationSays) {
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 20.0);
-  const UtcInstant instant =
+  const UtcTime instant =
       AddSeconds(*NextMoonrise(eye, ParseInstant("2026-06-29T12:00:00Z")), 360.0);  // full
   const Medium medium =
       OnOsculatingSphere(MediumPreset("earth"), PlaceFromDegrees(46.5, 8.0, 0.0).latitude_rad);
@@ -169,7 +169,7 @@ TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationSays) {
 }
 
 TEST(RefractedPlaces, TheDiskOfASettingSunIsFlat) {
-  const UtcInstant evening = ParseInstant("2026-06-21T19:20:30Z");
+  const UtcTime evening = ParseInstant("2026-06-21T19:20:30Z");
   Scene scene = QuickScene(20.0, 0.0, 0.0, 1.2);
   const SunPosition sun = tests::SunSeenIn(scene, evening);
   scene.camera =
@@ -363,7 +363,7 @@ TEST(RefractedAir, BeforeTheSeaIsTheSameAtEveryFieldOfView) {
 
 TEST(TwilightAir, TheAureoleSurroundsTheVisibleDisk) {
   constexpr double kFov_deg = 5.0;
-  const UtcInstant evening = ParseInstant("2026-06-21T19:12:00Z");
+  const UtcTime evening = ParseInstant("2026-06-21T19:12:00Z");
   const SunPosition sun = tests::SunSeenIn(QuickScene(20.0, 0.0, 0.0, kFov_deg), evening);
   EXPECT_GT(sun.lower_for_air_rad, 15.0 * kArcminute) << "another sun lights the air";
   const SceneRenderer renderer(QuickScene(20.0, sun.azimuth_rad / kRadiansPerDegree,
@@ -382,7 +382,7 @@ TEST(TwilightAir, TheAureoleSurroundsTheVisibleDisk) {
 }
 
 /// Returns the luminance of the sky 30 degrees above the north at an instant.
-double SkyAt(const SceneRenderer& renderer, const UtcInstant& instant) {
+double SkyAt(const SceneRenderer& renderer, const UtcTime& instant) {
   const RenderSettings settings{.width = 1, .height = 1, .samples_per_pixel = 1, .layers = {}};
   return tests::Luminance(renderer.Render(instant, settings).at(0, 0));
 }
@@ -391,7 +391,7 @@ TEST(TwilightAir, DarkensWithoutAStepWhileTheSunSets) {
   const SceneRenderer renderer(QuickScene(20.0, 0.0, 30.0, 1.0));
   // The sun moves from 1 degree above the horizon to 4 below. Its direct light ends at 34', its
   // effect on the air at 3.5 degrees.
-  const UtcInstant begin = ParseInstant("2026-06-21T19:11:00Z");
+  const UtcTime begin = ParseInstant("2026-06-21T19:11:00Z");
   std::array<double, 37> fall{};
   double last = std::log(SkyAt(renderer, begin));
   for (std::size_t i = 0; i < fall.size(); ++i) {
@@ -416,7 +416,7 @@ TEST(LowSun, LightsLevelGroundByItsRefractedBeam) {
   settings.effects = settings.effects.Without(Effect::kSkylight).Without(Effect::kNightSky);
   for (const char* time :
        {"2026-06-21T18:30:00Z", "2026-06-21T19:00:00Z", "2026-06-21T19:12:00Z"}) {
-    const UtcInstant evening = ParseInstant(time);
+    const UtcTime evening = ParseInstant(time);
     const SunPosition sun = renderer.ApparentSun(evening);
     std::vector<double> sent = rays.Beam(sun.elevation_rad, 0.0);
     for (std::size_t band = 0; band < sent.size(); ++band)

@@ -25,7 +25,7 @@ namespace {
 
 using tests::Luminance;
 
-const UtcInstant kExtremeNoon = ParseInstant("2026-06-21T11:30:00Z");
+const UtcTime kExtremeNoon = ParseInstant("2026-06-21T11:30:00Z");
 
 RenderSettings Settings(int width, int height, std::vector<PictureLayer> layers = {}) {
   return {.width = width,

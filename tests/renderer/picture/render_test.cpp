@@ -43,7 +43,7 @@ const RenderSettings kSmall{
 
 TEST(Render, SkyPixelsAreReferenceSingleScatteringPlusTheRest) {
   const SceneRenderer renderer(QuickScene(1000.0, 180.0, 20.0, 40.0));
-  const UtcInstant noon = ParseInstant("2026-06-21T10:00:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T10:00:00Z");
   const Image image = renderer.Render(noon, kSmall);
   const SunPosition sun = renderer.ApparentSun(noon);
   const Medium& medium = renderer.medium();
@@ -95,7 +95,7 @@ TEST(Render, NightsAreFiniteAndNotNegative) {
 // Hard case 43.
 TEST(Render, BytesAreTheSameForAnyNumberOfThreads) {
   const SceneRenderer renderer(QuickScene(2.0, 120.0, 5.0, 60.0));
-  const UtcInstant dawn = ParseInstant("2026-06-21T03:40:00Z");
+  const UtcTime dawn = ParseInstant("2026-06-21T03:40:00Z");
   static_cast<void>(
       tests::SameForAnyNumberOfThreads([&] { return renderer.Render(dawn, kSmall); }));
 }
@@ -118,7 +118,7 @@ double MostRelativeDifference(const Image& a, const Image& b) {
 
 TEST(Render, AnEyeOnAPathSeesTheSameAsOneThatStandsThere) {
   // The eye is 80 km away: its vertical differs from the frame's by 0.7 degrees.
-  const UtcInstant evening = ParseInstant("2026-06-21T18:40:00Z");
+  const UtcTime evening = ParseInstant("2026-06-21T18:40:00Z");
   const SceneRenderer from(QuickScene(1000.0, 0.0, 0.0, 40.0));
   CameraSample camera_sample(evening);
   camera_sample.poses = {PoseAt(46.0, 8.8, 3000.0, 300.0, 4.0)};
@@ -132,7 +132,7 @@ TEST(Render, AnEyeOnAPathSeesTheSameAsOneThatStandsThere) {
 }
 
 TEST(Render, AMovingCameraSeesTheMeanOfItsViews) {
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const SceneRenderer renderer(QuickScene(1000.0, 0.0, 0.0, 40.0));
   RenderSettings settings = kSmall;
   settings.samples_per_pixel = 64;
@@ -163,7 +163,7 @@ TEST(Render, AMovingCameraSeesTheMeanOfItsViews) {
 
 TEST(Render, ImpossibleEyesLayersAndSizesAreRefused) {
   const SceneRenderer renderer(QuickScene(1000.0, 0.0, 0.0, 40.0));
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   CameraSample camera_sample(noon);
   for (const CameraPose& pose : {PoseAt(46.5, 8.0, -5.0, 0.0, 0.0),      // below the ground
                                  PoseAt(52.5, 8.0, 100.0, 0.0, 0.0)}) {  // too far away
@@ -192,7 +192,7 @@ double SunIlluminance(const SceneRenderer& renderer, const SunPosition& sun) {
 // Hard case 32.
 TEST(Render, TheDiskInThePictureHasTheSunsIlluminance) {
   // The radiance of the disk's pixels sums to the direct normal illuminance.
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   Scene at_sun = QuickScene(2.0, 0.0, 0.0, 1.0);
   const SunPosition sun = tests::SunSeenIn(at_sun, noon);
   at_sun.camera = CameraFromDegrees({2.0, false}, sun.azimuth_rad / kRadiansPerDegree,
@@ -239,7 +239,7 @@ double IlluminanceOfBrightPixels(const Image& image, const CameraRays& camera) {
 
 // Hard case 32.
 TEST(Render, ADiskSmallerThanAPixelHasTheSunsIlluminance) {
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const Scene bare = QuickScene(2.0, 0.0, 0.0, 90.0);
   const SunPosition sun = tests::SunSeenIn(bare, noon);
   const double azimuth = sun.azimuth_rad / kRadiansPerDegree;
@@ -279,7 +279,7 @@ TEST(Render, ADiskSmallerThanAPixelHasTheSunsIlluminance) {
 
 // Hard case 32.
 TEST(Render, ASmallDiskIsFoundWithABoundOnTheNoise) {
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   Scene at_sun = QuickScene(2.0, 0.0, 0.0, 90.0);
   const SunPosition sun = tests::SunSeenIn(at_sun, noon);
   at_sun.camera = CameraFromDegrees({2.0, false}, sun.azimuth_rad / kRadiansPerDegree + 1.0,
@@ -296,7 +296,7 @@ TEST(Render, ASmallDiskIsFoundWithABoundOnTheNoise) {
 
 // Hard case 32.
 TEST(Render, AMovingCameraBlursADiskSmallerThanAPixel) {
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const Scene scene = QuickScene(1000.0, 0.0, 0.0, 90.0);
   const SunPosition sun = tests::SunSeenIn(scene, noon);
   const SceneRenderer renderer(scene);
@@ -343,7 +343,7 @@ TEST_F(RenderOfFiles, SummitOfFujiIsLitBeforeTheLakeBelow) {
                                 .filter = PixelFilter::Kind::kBox,
                                 .air_nodes = 8,
                                 .layers = {PictureLayer::kDepth, PictureLayer::kSunVisibility}};
-  const UtcInstant sunrise =
+  const UtcTime sunrise =
       *FindSunEvent(SunEvent::kSunrise, scene.place, ParseInstant("2026-01-01T03:00:00Z"));
   const auto lit_share = [&](const Image& image, int first_row, int last_row) {
     double lit = 0.0, ground = 0.0;
@@ -368,14 +368,14 @@ TEST_F(RenderOfFiles, SummitOfFujiIsLitBeforeTheLakeBelow) {
 // Hard case 22.
 TEST(Render, IlluminanceFallsSmoothlyFromNoonIntoTheNight) {
   const SceneRenderer renderer(QuickScene(2.0, 0.0, 0.0, 60.0));
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const double at_noon = renderer.Illuminance(noon);
   EXPECT_GT(at_noon, 90e3) << "a clear June noon at 46.5 degrees: about 110 klx";
   EXPECT_LT(at_noon, 130e3);
   double before = std::log2(renderer.Illuminance(ParseInstant("2026-06-21T17:00:00Z")));
   double step_before = 0.0;
   for (int minute = 1; minute <= 340; ++minute) {
-    const UtcInstant instant{61212, 17.0 * 3600.0 + 60.0 * minute};
+    const UtcTime instant{61212, 17.0 * 3600.0 + 60.0 * minute};
     const double stops = std::log2(renderer.Illuminance(instant));
     EXPECT_LT(stops, before) << minute << " minutes after 17:00 UTC";
     if (minute > 1) {
@@ -400,7 +400,7 @@ TEST(Render, TheScotopicLayerIsThatOfTheRods) {
   }
 }
 
-const UtcInstant kPolarisedMorning = ParseInstant("2026-06-21T06:00:00Z");
+const UtcTime kPolarisedMorning = ParseInstant("2026-06-21T06:00:00Z");
 
 Image Through(Scene scene, std::optional<double> polariser_deg, int width, int height,
               const std::vector<PictureLayer>& layers = {}) {

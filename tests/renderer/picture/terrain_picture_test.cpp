@@ -39,8 +39,8 @@ Scene MeshScene(Scene scene, const std::filesystem::path& file, const std::strin
 }
 
 // At 46.5 N 8 E on that evening the sun is 15 degrees high, at azimuth 281.
-const UtcInstant kLowSun = ParseInstant("2026-06-21T17:45:00Z");
-const UtcInstant kHighSun = ParseInstant("2026-06-21T11:30:00Z");
+const UtcTime kLowSun = ParseInstant("2026-06-21T17:45:00Z");
+const UtcTime kHighSun = ParseInstant("2026-06-21T11:30:00Z");
 
 double MeanLuminance(const SceneRenderer& renderer, const CameraSample& camera_sample,
                      EffectSet effects = EffectSet::All()) {
@@ -159,7 +159,7 @@ double InscatterAt(const Image& image, int x, int y) {
                     image.layers[2].values[pixel]});
 }
 
-const UtcInstant kRangeMorning = ParseInstant("2026-06-21T04:20:00Z");
+const UtcTime kRangeMorning = ParseInstant("2026-06-21T04:20:00Z");
 
 TEST(RenderAir, SharedAirOfAPixelIsRightToATenthOfAPercent) {
   // The camera stands above a hill in the built-in range and looks past the morning sun, with

@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 double PlaceDegrees(double radians) { return radians / kRadiansPerDegree; }
 
 TEST(Places, EveryPlaceHasAZoneThatKnowsItsLongitude) {
-  const UtcInstant winter = ParseInstant("2026-01-15T12:00:00Z");
+  const UtcTime winter = ParseInstant("2026-01-15T12:00:00Z");
   std::set<std::string> names;
   for (const NamedPlace& place : NamedPlaces()) {
     EXPECT_TRUE(names.insert(place.name).second) << place.name << " is there twice";
@@ -153,7 +153,7 @@ TEST(Places, TheZoneIsTheScenesThenThatOfTheNearestPlaceThenTheLongitudes) {
 }
 
 TEST(Places, LocalTimeNamesItsZoneAndTheShareOfTheDay) {
-  const UtcInstant now = ParseInstant("2026-06-21T04:00:00Z");
+  const UtcTime now = ParseInstant("2026-06-21T04:00:00Z");
   const LocalTime tokyo = LocalTimeAt(now, "Asia/Tokyo");
   EXPECT_EQ(tokyo.date + " " + tokyo.time + tokyo.offset, "2026-06-21 13:00:00+09:00");
   EXPECT_EQ(tokyo.zone, "Asia/Tokyo");

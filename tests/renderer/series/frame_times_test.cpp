@@ -30,7 +30,7 @@ using tests::Fuji;
 using tests::Tromso;
 
 /// Returns the instant of a text on midsummer at Mount Fuji.
-UtcInstant At(const std::string& text) { return InstantFromText(text, Fuji()); }
+UtcTime At(const std::string& text) { return InstantFromText(text, Fuji()); }
 std::string UtcAt(const std::string& text) { return FormatUtc(At(text)); }
 std::string FaultAt(const std::string& text, const EventDay& day = Fuji()) {
   return FaultOf([&] { return InstantFromText(text, day); });
@@ -60,7 +60,7 @@ TEST(TimeText, EventsAreFoundOnTheLocalDayAndMovedByOffsets) {
   EXPECT_EQ(FormatInZone(At("sunrise"), "Asia/Tokyo").substr(0, 14), "2026-06-21T04:")
       << "the sun rises over Fuji in midsummer between 4 and 5 o'clock";
   EXPECT_EQ(FormatInZone(At("sunset"), "Asia/Tokyo").substr(0, 14), "2026-06-21T19:");
-  const UtcInstant dusk = At("civil-dusk");
+  const UtcTime dusk = At("civil-dusk");
   EXPECT_NEAR(SecondsBetween(dusk, At("civil-dusk+20m")), 1200.0, 1e-6);
   EXPECT_NEAR(SecondsBetween(dusk, At("civil-dusk-1h30m")), -5400.0, 1e-6);
   EXPECT_NEAR(SecondsBetween(At("noon"), At("noon-90s")), -90.0, 1e-6);
@@ -171,7 +171,7 @@ TEST(TimeText, MidnightIsWhereTheSunIsLowest) {
   for (const double latitude : {0.0, 46.5, 69.0}) {
     EventDay day = Fuji();
     day.place.latitude_rad = latitude * kRadiansPerDegree;
-    const UtcInstant midnight = InstantFromText("midnight", day);
+    const UtcTime midnight = InstantFromText("midnight", day);
     const double lowest = SunAt(day.place, midnight).elevation_rad;
     for (const double seconds : {-600.0, 600.0})
       EXPECT_LT(lowest, SunAt(day.place, AddSeconds(midnight, seconds)).elevation_rad) << latitude;
@@ -190,11 +190,11 @@ TEST(TimeText, TomorrowIsTheNextDayWhenClocksAreChanged) {
 
 TEST(TimeText, TheMoonHasEventsOfTheDay) {
   const EventDay day = Fuji();
-  const UtcInstant rise = InstantFromText("moonrise", day);
-  const UtcInstant next = *NextMoonrise(day.place, ParseInstant("2026-06-21T00:00:00+09:00"));
+  const UtcTime rise = InstantFromText("moonrise", day);
+  const UtcTime next = *NextMoonrise(day.place, ParseInstant("2026-06-21T00:00:00+09:00"));
   EXPECT_NEAR(SecondsBetween(next, rise), 0.0, 0.1) << "the error of its search";
   EXPECT_NEAR(SecondsBetween(rise, InstantFromText("moonrise+20m", day)), 1200.0, 1e-6);
-  const UtcInstant transit = InstantFromText("moon-transit", day);
+  const UtcTime transit = InstantFromText("moon-transit", day);
   const double before = MoonAt(day.place, AddSeconds(transit, -900.0)).elevation_rad;
   const double at = MoonAt(day.place, transit).elevation_rad;
   const double after = MoonAt(day.place, AddSeconds(transit, 900.0)).elevation_rad;
@@ -254,7 +254,7 @@ TEST(TimeText, SunAndMoonAreThoseOfAnAlmanac) {
       ASSERT_TRUE(almanac >> utc);
       const auto instant = FindDailyEvent(event, day);
       ASSERT_TRUE(instant.has_value()) << latitude << ' ' << date << ' ' << event;
-      const UtcInstant expected = ParseInstant(fmt::format("2026-{}Z", utc));
+      const UtcTime expected = ParseInstant(fmt::format("2026-{}Z", utc));
       EXPECT_NEAR(SecondsBetween(expected, *instant), 0.0, event[0] == 'm' ? 60.0 : 10.0)
           << latitude << ' ' << date << ' ' << event;
     }

@@ -52,7 +52,7 @@ TEST(KeogramPicture, HasTheMiddleColumnsOfPicturesInOrder) {
   }
 }
 
-UtcInstant Hour(double hour) { return {61212, 3600.0 * hour}; }
+UtcTime Hour(double hour) { return {61212, 3600.0 * hour}; }
 
 std::size_t CountOf(const std::string& text, const std::string& part) {
   std::size_t count = 0;

@@ -84,7 +84,7 @@ class SeriesRun : public TemporaryFolder {
   }
   static std::vector<Frame> Frames(int count) {
     std::vector<Frame> frames;
-    for (int i = 1; i <= count; ++i) frames.push_back({i, UtcInstant{61212, 3600.0 * (i + 3)}});
+    for (int i = 1; i <= count; ++i) frames.push_back({i, UtcTime{61212, 3600.0 * (i + 3)}});
     return frames;
   }
   SeriesSummary Run(const SeriesSource& source, const SeriesOutput& output, int count = 3) {
@@ -182,7 +182,7 @@ TEST_F(SeriesRun, SingleFramesAreExposedAsInTheSeries) {
   };
   SeriesOutput output = Output(true);
   std::vector<Frame> frames;
-  for (int i = 1; i <= 8; ++i) frames.push_back({i, UtcInstant{61212, 600.0 * i}});
+  for (int i = 1; i <= 8; ++i) frames.push_back({i, UtcTime{61212, 600.0 * i}});
   RunSeries(source, frames, frames, output);
   std::vector<double> ev100;
   for (int i = 1; i <= 8; ++i) {
@@ -231,7 +231,7 @@ TEST_F(SeriesRun, AutomaticWhiteBalanceIsSmoothOverAFilm) {
   output.look.white.kind = WhiteBalance::Kind::kAuto;
   output.exposure = {ExposureRule::Kind::kFixed, 9.0};
   std::vector<Frame> frames;
-  for (int i = 0; i < 49; ++i) frames.push_back({i, UtcInstant{61212, 40000.0 + 30.0 * i}});
+  for (int i = 0; i < 49; ++i) frames.push_back({i, UtcTime{61212, 40000.0 + 30.0 * i}});
   RunSeries(source, frames, frames, output);
   EXPECT_EQ(previews, 13) << "a node every four frames";
   std::vector<double> mireds;
@@ -368,7 +368,7 @@ TEST_F(SeriesRun, OnlySelectedFramesAreRendered) {
 // A process of a farm, of a week at one frame a second.
 TEST_F(SeriesRun, AProcessOfALongSeriesListsItsOwnFramesAlone) {
   std::vector<Frame> frames;
-  for (int i = 0; i < 604800; ++i) frames.push_back({i, AddSeconds(UtcInstant{61212, 0.0}, i)});
+  for (int i = 0; i < 604800; ++i) frames.push_back({i, AddSeconds(UtcTime{61212, 0.0}, i)});
   RunSeries(Source(), frames, SelectFrames(frames, "400000-400001"), Output());
   EXPECT_EQ(renderings_, 2);
   const std::string manifest = ContentOf(folder_ / "frame.manifest.csv");

@@ -22,7 +22,7 @@ std::vector<Frame> Every(double seconds, int count) {
   for (int i = 0; i < count; ++i) {
     const double second = 80000.0 + seconds * i;  // over midnight
     const int days = static_cast<int>(second / 86400.0);
-    frames.push_back({i, UtcInstant{61212 + days, second - 86400.0 * days}, seconds * i});
+    frames.push_back({i, UtcTime{61212 + days, second - 86400.0 * days}, seconds * i});
   }
   return frames;
 }
@@ -112,7 +112,7 @@ const GeodeticPosition& Place() {
 std::vector<Frame> Minutes() {
   std::vector<Frame> frames;
   for (int i = 0; i <= 1440; ++i)
-    frames.push_back({i, AddSeconds(UtcInstant{61212, 41400.0}, 60.0 * i)});
+    frames.push_back({i, AddSeconds(UtcTime{61212, 41400.0}, 60.0 * i)});
   return frames;
 }
 
@@ -162,7 +162,7 @@ TEST(SteadySeries, ShortAndLongDusksFallWithoutSteps) {
     Scene scene = BareScene(2.0, 0.0, 45.0, 60.0);
     scene.place = PlaceFromDegrees(latitude, 8.0, 0.0);
     const SceneRenderer renderer(scene);
-    const UtcInstant sunset =  // of the day after a new moon
+    const UtcTime sunset =  // of the day after a new moon
         *FindSunEvent(SunEvent::kSunset, scene.place, ParseInstant("2026-03-20T12:00:00Z"));
     double before = 0.0;
     for (int minute = 0; minute <= 150; ++minute) {

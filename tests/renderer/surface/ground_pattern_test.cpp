@@ -92,7 +92,7 @@ TEST_F(PatternsOnAPath, ShowTheGroundOfStillsAtTheirPlaces) {
     scene.terrain = {TerrainSource::Kind::kElevationModel, model, VoidPolicy::kFill};
     return scene;
   };
-  const UtcInstant noon = ParseInstant("2026-06-21T11:00:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:00:00Z");
   RenderSettings settings;
   settings.width = 24;
   settings.height = 16;

@@ -423,7 +423,7 @@ TEST(Clock, JumpsToTheNextSunriseAndNeverToTheSameAgain) {
   SceneClock clock = ClockAt("2026-06-21T12:00:00Z");
   for (int day = 22; day < 25; ++day) {
     ASSERT_TRUE(clock.JumpToNext(SkyEvent::kSunrise, kZurich));
-    const UtcInstant expected = *FindSunEvent(
+    const UtcTime expected = *FindSunEvent(
         SunEvent::kSunrise, kZurich, ParseInstant("2026-06-" + std::to_string(day) + "T12:00:00Z"));
     EXPECT_NEAR(SecondsBetween(expected, clock.now()), 0.0, 0.2)
         << "both searches are within 0.1 s";
@@ -432,7 +432,7 @@ TEST(Clock, JumpsToTheNextSunriseAndNeverToTheSameAgain) {
 
 TEST(Clock, TheEventsOfADayComeInTheirOrder) {
   SceneClock clock = ClockAt("2026-03-20T00:00:00Z");
-  UtcInstant before = clock.now();
+  UtcTime before = clock.now();
   for (const SkyEvent event :
        {SkyEvent::kDawn, SkyEvent::kSunrise, SkyEvent::kNoon, SkyEvent::kSunset, SkyEvent::kDusk}) {
     ASSERT_TRUE(clock.JumpToNext(event, kZurich)) << NameOf(event);
@@ -463,7 +463,7 @@ TEST(Clock, NoDayIsPassedOverOnTheWayToTheNextEvent) {
     const GeodeticPosition place = PlaceFromDegrees(latitude, 15.0, height_m);
     SceneClock clock = ClockAt(start);
     // The reference solution searches every day.
-    std::optional<UtcInstant> expected;
+    std::optional<UtcTime> expected;
     for (int day = 0; !expected && day < 60; ++day) {
       expected = FindSunEvent(SunEvent::kSunset, place, AddSeconds(clock.now(), day * 86400.0));
       if (expected && SecondsBetween(clock.now(), *expected) < 1.0) expected.reset();
@@ -478,7 +478,7 @@ TEST(Clock, EventsOfTheMoonAreThoseOfItsEphemeris) {
   SceneClock clock = ClockAt("2026-06-21T12:00:00Z");
   for (const auto& [event, next] : {std::pair{SkyEvent::kMoonset, &NextMoonset},
                                     std::pair{SkyEvent::kMoonrise, &NextMoonrise}}) {
-    const UtcInstant expected = next(kZurich, clock.now()).value();
+    const UtcTime expected = next(kZurich, clock.now()).value();
     ASSERT_TRUE(clock.JumpToNext(event, kZurich));
     EXPECT_EQ(SecondsBetween(expected, clock.now()), 0.0) << NameOf(event);
   }
@@ -495,7 +495,7 @@ TEST(Clock, TypedTimesAreUtcWithAZAndLocalWithout) {
   clock.Type("06:07:08", kZurich, "Asia/Tokyo");
   EXPECT_EQ(Shows(clock), "2026-07-02T21:07:08Z") << "at 16:30 UTC Tokyo already has the 3rd";
   clock.Type("sunset-20m", kZurich, "Europe/Zurich");
-  const UtcInstant sunset = *FindSunEvent(SunEvent::kSunset, kZurich, clock.now());
+  const UtcTime sunset = *FindSunEvent(SunEvent::kSunset, kZurich, clock.now());
   EXPECT_NEAR(SecondsBetween(clock.now(), sunset), 1200.0, 0.2);
   EXPECT_THROW(clock.Type("25:00", kZurich, "Europe/Zurich"), InputError);
   EXPECT_THROW(clock.Type("sunsat", kZurich, "Europe/Zurich"), InputError);
@@ -505,7 +505,7 @@ TEST(Clock, TypedTimesAreUtcWithAZAndLocalWithout) {
 // --- flights that are read ---
 
 constexpr double kSpeed_deg_per_s = 1e-4;
-const UtcInstant kStart = ParseInstant("2026-06-21T04:00:00Z");
+const UtcTime kStart = ParseInstant("2026-06-21T04:00:00Z");
 
 /// Northwards, a frame of a sixtieth of a second after the other.
 void Fly(FlightLog& log, double begin_s, int frames) {
@@ -562,7 +562,7 @@ class FlightRecords : public TemporaryFolder {
 
   /// Northwards, 3000 m high, a frame of a sixtieth of a second after the other.
   static void Fly(FlightRecorder& recorder, int frames) {
-    const UtcInstant start = ParseInstant("2026-06-21T04:00:00Z");
+    const UtcTime start = ParseInstant("2026-06-21T04:00:00Z");
     for (int frame = 0; frame < frames; ++frame) {
       const double seconds = frame / 60.0;
       const CameraPose eye{PlaceFromDegrees(46.0 + 1e-4 * seconds, 8.0, 3000.0)};

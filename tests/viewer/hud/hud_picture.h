@@ -56,7 +56,7 @@ inline Changes FrameOf(Hud& hud, const HudModel& model, const InputFrame& input)
   AutopilotTargets held{.heading_rad = model.autopilot.heading_rad};
   flight.controller().pilot().aircraft()->autopilot().Set(held);
   const double first_throttle = flight.controller().pilot().aircraft()->Readout().throttle;
-  const UtcInstant before = flight.controller().clock().now();
+  const UtcTime before = flight.controller().clock().now();
   hud.Update(model, nullptr, input, flight);
   Changes changes;
   static_cast<RecordedCommands::Requests&>(changes) = flight.requests;

@@ -77,7 +77,7 @@ class SmallPictures : public tests::HeadlessTile {
 
   struct Window {
     Scene scene;
-    UtcInstant now;
+    UtcTime now;
     double ev100;
     bool has_landing_light = false;
   };

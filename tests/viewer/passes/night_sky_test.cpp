@@ -188,7 +188,7 @@ TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
 
 TEST(NightSkyMap, LampsOfTownsAreInTheAirAsTheRendererHasThem) {
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 500.0);
-  const UtcInstant now{61058, 73800.0};
+  const UtcTime now{61058, 73800.0};
   const Medium medium = MediumPreset("earth");
   const BandColour colour(medium.wavelengths_nm);
   const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
@@ -204,7 +204,7 @@ TEST(NightSkyMap, LampsOfTownsAreInTheAirAsTheRendererHasThem) {
 
 TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 3000.0);
-  const UtcInstant now{61058, 73800.0};
+  const UtcTime now{61058, 73800.0};
   const Medium medium = MediumPreset("earth");
   const BandColour colour(medium.wavelengths_nm);
   const NightSkyMap floor = NightSkyMapOver(eye, now, medium, colour);
@@ -237,13 +237,12 @@ TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
 
 // --- the lights of the sky ---
 
-double SunElevationAt(const GeodeticPosition& eye, const UtcInstant& now) {
+double SunElevationAt(const GeodeticPosition& eye, const UtcTime& now) {
   return ApparentSunAt(eye, now).elevation_rad;
 }
 
 // Returns the instant of the evening at which the sun has sunk to an elevation.
-UtcInstant WhenTheSunIsAt(double elevation_rad, const GeodeticPosition& eye,
-                          const UtcInstant& noon) {
+UtcTime WhenTheSunIsAt(double elevation_rad, const GeodeticPosition& eye, const UtcTime& noon) {
   double before_s = 0.0, after_s = 43200.0;
   while (after_s - before_s > 1.0) {
     const double middle_s = 0.5 * (before_s + after_s);
@@ -267,8 +266,8 @@ TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
   int moonlit = 0;
   for (int day = 0; day < 30; ++day) {
     for (const double elevation_deg : {0.5, -1.0, -2.5, -3.49}) {
-      const UtcInstant now =
-          WhenTheSunIsAt(elevation_deg * kRadiansPerDegree, eye, UtcInstant{61058 + day, 41400.0});
+      const UtcTime now =
+          WhenTheSunIsAt(elevation_deg * kRadiansPerDegree, eye, UtcTime{61058 + day, 41400.0});
       const LightsOfSky lights = FrameSkyAt(eye, now, air).lights;
       ASSERT_EQ(lights.front().body, LightSource::kSun) << day << ' ' << elevation_deg;
       if (lights.size() == 1) continue;
@@ -314,7 +313,7 @@ TEST(LightsOfSky, WhenTheMoonIsFirstNoSummitIsLitByTheSun) {
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
   const AirOfSky air(std::make_shared<const SolvedAir>(MediumPreset("earth"), AirSolution::kDraft));
   // The moon is full on the 3rd of January 2026 and rises before the sun has set.
-  const UtcInstant now = WhenTheSunIsAt(-3.51 * kRadiansPerDegree, eye, UtcInstant{61043, 41400.0});
+  const UtcTime now = WhenTheSunIsAt(-3.51 * kRadiansPerDegree, eye, UtcTime{61043, 41400.0});
   const LightsOfSky lights = FrameSkyAt(eye, now, air).lights;
   ASSERT_EQ(lights.size(), 2U);
   EXPECT_EQ(lights.front().body, LightSource::kMoon);

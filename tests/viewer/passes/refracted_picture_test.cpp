@@ -29,7 +29,7 @@ namespace {
 
 constexpr double kArcMinute = kRadiansPerDegree / 60.0;
 
-PaintedView ViewFrom(const Scene& scene, const UtcInstant& now, int width, int height) {
+PaintedView ViewFrom(const Scene& scene, const UtcTime& now, int width, int height) {
   CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, 0.0,
                  scene.camera.fov_rad};
   eye.place.height_m = scene.camera.height.value_m;
@@ -140,7 +140,7 @@ TEST(RefractedDisk, OneThatIsKeptCoversTheDiskThatHasMoved) {
 
 TEST(ViewBend, IsOffWhereNothingMovesByHalfAPixel) {
   const Medium medium = MediumPreset("earth");
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const Scene near = BareScene(20.0, 0.0, 0.0, 60.0);
   EXPECT_FALSE(BendOf(ViewFrom(near, noon, 640, 360), medium, 40e3)) << "pixels of 5.6'";
   EXPECT_TRUE(BendOf(ViewFrom(near, noon, 640, 360), medium, 120e3)) << "lifted by 5' at most";
@@ -150,7 +150,7 @@ TEST(ViewBend, IsOffWhereNothingMovesByHalfAPixel) {
 
 TEST(ViewBend, IsOnWhereOnlyPixelsAtTheEdgeAreSmall) {
   const Medium medium = MediumPreset("earth");
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const Scene wide = BareScene(20.0, 0.0, 0.0, 120.0);
   EXPECT_TRUE(BendOf(ViewFrom(wide, noon, 640, 360), medium, 120e3))
       << "land rises by 5'; pixels have 18.6' in the middle and 3.8' in the corners";
@@ -165,7 +165,7 @@ TEST_F(RefractedOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
   Scene scene = BareScene(20.0, 306.0, 0.15, 1.2);
   scene.ground.kind = GroundCover::Kind::kWater;
   constexpr int kAcross = 64, kDown = 48;
-  const UtcInstant now = ParseInstant("2026-06-21T19:23:40Z");
+  const UtcTime now = ParseInstant("2026-06-21T19:23:40Z");
   const Image painted = Painted(scene, ViewFrom(scene, now, kAcross, kDown));
   RenderSettings settings{.width = kAcross,
                           .height = kDown,
@@ -202,7 +202,7 @@ using RefractedPeak = tests::HeadlessWith<TemporaryFolder>;
 TEST_F(RefractedPeak, BehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
   const Medium medium =
       OnOsculatingSphere(MediumPreset("earth"), BareScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad);
-  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   for (const tests::FarPeak& peak :
        {tests::FarPeak{20.0, 110e3, 650.0}, tests::FarPeak{3000.0, 300e3, 800.0}}) {
     const double expected = tests::ElevationByEquation(medium, peak);

@@ -51,7 +51,7 @@ RenderSettings ReferenceSettings(const PictureSize& size, int samples) {
   return settings;
 }
 
-PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& now,
+PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcTime& now,
                    const PictureSize& size = kFull) {
   CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
                  scene.camera.roll_rad, scene.camera.fov_rad};
@@ -62,7 +62,7 @@ PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& no
 /// The renderer and the painter of a scene, for as many views as one likes.
 class BothPrograms {
  public:
-  explicit BothPrograms(const Scene& scene, const UtcInstant& first, int samples = kPictureSamples)
+  explicit BothPrograms(const Scene& scene, const UtcTime& first, int samples = kPictureSamples)
       : samples_(samples),
         ground_(std::make_shared<const SceneGround>(LoadGround(scene))),
         reference_(scene, ground_),
@@ -578,7 +578,7 @@ TEST_F(LandPictures, OfTheBuiltInRangeAtSunsetAreTheRenderers) {
 
 // Over Burgos with nine tenths covered.
 TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
-  const UtcInstant now = ParseInstant("2026-08-12T18:23:00Z");
+  const UtcTime now = ParseInstant("2026-08-12T18:23:00Z");
   // The disk has a radius of more than 2.5 pixels, and is drawn by rays in both programs.
   Scene scene = BareScene(2.0, 284.0, 9.0, tests::ScaledDown(8.0, 5.0));
   scene.place = PlaceFromDegrees(42.3439, -3.6969, 0.0);
@@ -594,7 +594,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
 }
 
 TEST_F(SkyPainterTest, TheMoonOfTheEarthIsNotInTheSkyOfMars) {
-  const UtcInstant now = ParseInstant("2026-06-29T22:00:00Z");
+  const UtcTime now = ParseInstant("2026-06-29T22:00:00Z");
   Scene scene = BareScene(300.0, 0.0, 0.0, 20.0);
   const MoonPosition moon = ApparentMoonAt(scene.place, now);
   ASSERT_GT(moon.elevation_rad, 0.1);
@@ -641,11 +641,11 @@ class RangeInTime {
  public:
   RangeInTime() { painter_.WaitUntilReady(At(kNoon)); }
 
-  MeanLuminance Frame(const UtcInstant& now) {
+  MeanLuminance Frame(const UtcTime& now) {
     painter_.Update(At(now), 0.04);
     return Paint(At(now));
   }
-  MeanLuminance Settled(const UtcInstant& now) {
+  MeanLuminance Settled(const UtcTime& now) {
     painter_.WaitUntilReady(At(now));
     return Paint(At(now));
   }
@@ -660,7 +660,7 @@ class RangeInTime {
   }
 
  private:
-  [[nodiscard]] PaintedView At(const UtcInstant& now) const {
+  [[nodiscard]] PaintedView At(const UtcTime& now) const {
     return ViewOf(scene_, eye_m_, now, {64, 36});
   }
   MeanLuminance Paint(const PaintedView& view) {
@@ -668,7 +668,7 @@ class RangeInTime {
     return MeanLuminanceOf(painter_.picture().Read());
   }
 
-  static constexpr UtcInstant kNoon{61397, 39600.0};  // 2026-12-23
+  static constexpr UtcTime kNoon{61397, 39600.0};  // 2026-12-23
   Tile tile_;
   Scene scene_ = tests::kSanitized
                      ? tile_.View({200.0, true}, 250.0, -8.0, "2026-12-23T11:00:00Z").scene
@@ -686,7 +686,7 @@ TEST_F(RangeInTimePictures, AfterAJumpEachFrameIsLitByTheNewSun) {
                                  "2026-12-23T22:00:00Z"};
   jumps.resize(tests::ScaledDown(jumps.size(), std::size_t{1}));
   for (const char* utc : jumps) {
-    const UtcInstant now = ParseInstant(utc);
+    const UtcTime now = ParseInstant(utc);
     std::vector<MeanLuminance> shown;
     for (int frame = 0; frame < 8; ++frame) shown.push_back(shared().Frame(now));
     const MeanLuminance settled = shared().Settled(now);
@@ -697,7 +697,7 @@ TEST_F(RangeInTimePictures, AfterAJumpEachFrameIsLitByTheNewSun) {
 
 // From the last sun into the night, at 25 frames a second of time that runs 600 times as fast.
 TEST_F(RangeInTimePictures, SixHundredTimesAsFastDuskIsLitByItsSun) {
-  UtcInstant now = ParseInstant("2026-12-23T15:44:00Z");
+  UtcTime now = ParseInstant("2026-12-23T15:44:00Z");
   static_cast<void>(shared().Settled(now));
   constexpr int kFrames = tests::ScaledDown(72, 8), kChecked = tests::ScaledDown(24, 8);
   for (int frame = 0; frame < kFrames; ++frame) {
@@ -710,7 +710,7 @@ TEST_F(RangeInTimePictures, SixHundredTimesAsFastDuskIsLitByItsSun) {
 
 // Hard case 5.
 TEST_F(SkyPainterTest, FromAnAeroplaneAndFromOrbitTheSkyIsTheRenderers) {
-  const UtcInstant now = ParseInstant("2026-06-21T06:00:00Z");
+  const UtcTime now = ParseInstant("2026-06-21T06:00:00Z");
   BothPrograms both(BareScene(10e3, 160.0, -5.0, 50.0), now);
   ExpectWithin(both.Difference(ViewOf(BareScene(10e3, 160.0, -5.0, 50.0), 10e3, now)),
                {0.0018, 0.0041}, "tables between nodes");
@@ -758,7 +758,7 @@ class DrapedLand : public tests::HeadlessTile {
 
 TEST_F(DrapedLand, ColoursLieWhereTheRenderersDoFromWhereverTheyAreSeen) {
   const Scene scene = DrapedScene();
-  const UtcInstant now = ParseInstant("2026-06-21T10:00:00Z");
+  const UtcTime now = ParseInstant("2026-06-21T10:00:00Z");
   BothPrograms both(scene, now);
   PaintedView view = ViewOf(scene, 4500.0, now);
   ExpectWithin(
