@@ -53,7 +53,7 @@ PanoramaSun SunFromAngles(const SkyOptions& options) {
 
 // Returns the sun at its apparent (refracted) position. The air is lit by a lower sun
 // (lower_for_air_rad), as in the images of skyseries.
-PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcTime& instant, const Medium& medium) {
+PanoramaSun SunFromTime(const Place& eye, const UtcTime& instant, const Medium& medium) {
   const SunPosition sun = ApparentSunAt(eye, instant, GentleAirOf(medium));
   return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au, sun.angular_radius_rad,
           sun.lower_for_air_rad};
@@ -78,13 +78,12 @@ SkyJob JobFrom(const SkyOptions& options) {
   if (options.sun_elevation) {
     job.settings.sun = SunFromAngles(options);
   } else {
-    const GeodeticPosition eye =
-        PlaceFromDegrees(*options.latitude, *options.longitude, options.altitude);
+    const Place eye = CheckedPlace({*options.latitude, *options.longitude, options.altitude});
     const UtcTime instant = ParseInstant(*options.time, options.zone);
-    job.medium = OnOsculatingSphere(job.medium, eye.latitude_rad);
+    job.medium = OnOsculatingSphere(job.medium, eye.latitude_rad());
     job.settings.sun = SunFromTime(eye, instant, job.medium);
-    job.metadata["alpenglow.latitude_deg"] = Degrees(eye.latitude_rad);
-    job.metadata["alpenglow.longitude_deg"] = Degrees(eye.longitude_rad);
+    job.metadata["alpenglow.latitude_deg"] = fmt::format("{:.6f}", eye.latitude_deg);
+    job.metadata["alpenglow.longitude_deg"] = fmt::format("{:.6f}", eye.longitude_deg);
     job.metadata["alpenglow.utc"] = FormatUtc(instant, 3);
   }
   return job;

@@ -31,8 +31,7 @@ namespace {
 
 /// Returns the place of a path: its middle, from which most of it is visible. A flight over the
 /// built-in range begins at the view of the range.
-GeodeticPosition PlaceOfPath(const std::string& file, const std::optional<Track>& track,
-                             bool over_range) {
+Place PlaceOfPath(const std::string& file, const std::optional<Track>& track, bool over_range) {
   if (track) return track->points[track->points.size() / 2].place;
   const std::vector<CameraPathPoint> points = ReadCameraPath(file).points();
   return points[over_range ? 0 : points.size() / 2].pose.place;
@@ -44,10 +43,10 @@ SceneOptions AlongPath(SceneOptions scene, const std::string& file,
                        const std::optional<Track>& track) {
   if (scene.place || scene.latitude || scene.longitude) return scene;
   const bool over_range = scene.dem.empty();
-  const GeodeticPosition place = PlaceOfPath(file, track, over_range);
+  const Place place = PlaceOfPath(file, track, over_range);
   if (!track && over_range && IsOnRangeAtHome(place)) return scene;
-  scene.latitude = place.latitude_rad / kRadiansPerDegree;
-  scene.longitude = place.longitude_rad / kRadiansPerDegree;
+  scene.latitude = place.latitude_deg;
+  scene.longitude = place.longitude_deg;
   return scene;
 }
 
@@ -64,7 +63,7 @@ CameraPath PathOfTrack(const Track& track, TrackStyle style, const Scene& scene)
   if (!track.note.empty()) Log(fmt::format("skyseries: warning: {}: {}\n", track.file, track.note));
   style.fov_rad = scene.camera.fov_rad;
   std::optional<SceneGround> ground;
-  return PathAlong(track, style, [&](const GeodeticPosition& place) {
+  return PathAlong(track, style, [&](const Place& place) {
     if (!ground) ground.emplace(LoadGround(scene));
     return GroundHeightUnder(*ground, place);
   });
@@ -78,7 +77,7 @@ void RequireVisible(const CameraPath& path, const std::string& file, const Scene
   bare.terrain.kind = TerrainSource::Kind::kNone;
   const SceneGround ground = LoadGround(bare);
   const bool has_land = scene.terrain.kind != TerrainSource::Kind::kNone;
-  CheckPoints(path, file, [&](GeodeticPosition place) {
+  CheckPoints(path, file, [&](Place place) {
     if (has_land) place.height_m = std::max(place.height_m, 0.0);
     static_cast<void>(StandAt(ground, place));
   });

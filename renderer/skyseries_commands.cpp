@@ -58,9 +58,9 @@ struct TimesOptions {
 };
 
 /// Returns the place on the ellipsoid.
-GeodeticPosition PlaceOf(const TimesOptions& options) {
-  if (!options.place) return PlaceFromDegrees(*options.latitude_deg, *options.longitude_deg, 0.0);
-  GeodeticPosition place = PlaceNamed(*options.place).place;
+Place PlaceOf(const TimesOptions& options) {
+  if (!options.place) return CheckedPlace({*options.latitude_deg, *options.longitude_deg, 0.0});
+  Place place = PlaceNamed(*options.place).place;
   place.height_m = 0.0;
   return place;
 }

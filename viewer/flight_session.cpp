@@ -38,7 +38,7 @@ FlightSession::FlightSession(const Scene& scene, const UtcTime& start,
                              const FlightSessionSettings& settings)
     : start_{Drawable(scene), settings},
       controller_(EyeOfScene(scene), EllipsoidOf(scene.medium), start,
-                  [this](const GeodeticPosition& place) { return edits_.GroundAt(place); }),
+                  [this](const Place& place) { return edits_.GroundAt(place); }),
       exposure_(settings.exposure, settings.look),
       display_pass_(InDaylight(settings.look), IsDraft(settings.first_air)
                                                    ? ToneMapPass::FirstPictures::kDraft
@@ -98,7 +98,7 @@ FlightMoment FlightSession::Moment() const {
 
 void FlightSession::TakeUp(const FlightMoment& moment) {
   // The eye keeps its position, whatever land is loaded here.
-  const GroundHeight no_ground = [](const GeodeticPosition&) {
+  const GroundHeight no_ground = [](const Place&) {
     return -std::numeric_limits<double>::infinity();
   };
   controller_.pilot().PutAt(moment.eye, no_ground);

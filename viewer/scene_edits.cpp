@@ -20,10 +20,10 @@ namespace {
 
 // Returns the half width of a square around a place that contains all land, at most 60 km. A
 // smaller square has finer samples.
-double HalfWidthOfLand(const LandLattice& lattice, const GeodeticPosition& place) {
+double HalfWidthOfLand(const LandLattice& lattice, const Place& place) {
   constexpr double kMost_m = 60e3;
-  const SampleSize size = SampleSizeAt(lattice, place.latitude_rad);
-  const LatticePlace at = lattice.At(place.latitude_rad, place.longitude_rad);
+  const SampleSize size = SampleSizeAt(lattice, place.latitude_rad());
+  const LatticePlace at = lattice.At(place.latitude_rad(), place.longitude_rad());
   const double columns = std::max(at.column, lattice.last_column - at.column);
   const double rows = std::max(at.row, lattice.last_row - at.row);
   return std::min(std::max(columns * size.column_m, rows * size.row_m) + size.row_m, kMost_m);
@@ -69,16 +69,16 @@ void SceneEdits::BeginHashing() {
       });
 }
 
-void SceneEdits::Use(const AirChoice& choice, const GeodeticPosition& place) {
+void SceneEdits::Use(const AirChoice& choice, const Place& place) {
   const Medium changed = Changed(changes_.planet, choice);
   changes_.air = choice;
   scene_.medium = changed;
   ++version_;
-  changes_.sky_air = OnOsculatingSphere(changed, place.latitude_rad);
+  changes_.sky_air = OnOsculatingSphere(changed, place.latitude_rad());
   painter_.Replace(*changes_.sky_air);
 }
 
-void SceneEdits::UsePlanet(const std::string& preset, const GeodeticPosition& place) {
+void SceneEdits::UsePlanet(const std::string& preset, const Place& place) {
   Medium planet = MediumPreset(preset);
   if (planet.follows_wgs84 != changes_.planet.follows_wgs84) {
     throw InputError(fmt::format(
@@ -101,24 +101,25 @@ void SceneEdits::Restore(const SceneChanges& changes) {
   painter_.Replace(*changes_.sky_air);
 }
 
-bool SceneEdits::IsRangeExpectedAt(const GeodeticPosition& place) const {
+bool SceneEdits::IsRangeExpectedAt(const Place& place) const {
   constexpr double kNear_m = 100.0;
   if (!has_range_ || painter_.land().ground().IsKnownAt(place)) return false;
-  GeodeticPosition view = ProceduralMountainsViewAboveGround(*scene_.terrain.centre).eye;
+  Place view = ProceduralMountainsViewAboveGround(*scene_.terrain.centre).eye;
   view.height_m = place.height_m;
   return glm::length(LocalFrame(kWgs84, view).EnuFromGeodetic(place).xyz) < kNear_m;
 }
 
-double SceneEdits::GroundAt(const GeodeticPosition& place) const {
+double SceneEdits::GroundAt(const Place& place) const {
   if (IsRangeExpectedAt(place)) return kRangeViewGround_m;
   return painter_.land().ground().HeightUnder(place).value_or(0.0);
 }
 
-void SceneEdits::AwaitGround(const GeodeticPosition& place) { painter_.land().AwaitGround(place); }
+void SceneEdits::AwaitGround(const Place& place) { painter_.land().AwaitGround(place); }
 
-void SceneEdits::BringRangeTo(const GeodeticPosition& place) {
+void SceneEdits::BringRangeTo(const Place& place) {
   const auto reaches = [&](const TerrainSource& range) {
-    return ProceduralMountainsExtent(*range.centre).Covers(place.latitude_rad, place.longitude_rad);
+    return ProceduralMountainsExtent(*range.centre)
+        .Covers(place.latitude_rad(), place.longitude_rad());
   };
   if (!has_range_ || reaches(scene_.terrain)) return;
   UseRange(reaches(first_terrain_) ? first_terrain_ : RangeSeenFrom(place));
@@ -130,7 +131,7 @@ void SceneEdits::UseRange(const TerrainSource& range) {
   ++version_;
 }
 
-void SceneEdits::BringLandTo(const GeodeticPosition& place, const std::string& name) {
+void SceneEdits::BringLandTo(const Place& place, const std::string& name) {
   BringRangeTo(place);
   const Landscape& land = painter_.land();
   if (land.tiles().source().IsEmpty()) return;
@@ -148,7 +149,7 @@ std::vector<std::string> SceneEdits::PollNotes() {
   return notes;
 }
 
-std::string SceneEdits::ZoneAt(const GeodeticPosition& place) const {
+std::string SceneEdits::ZoneAt(const Place& place) const {
   return ZoneNear(place, scene_.zone, scene_.place);
 }
 
@@ -174,12 +175,12 @@ ReferenceScene SceneEdits::ForRenderer(const CameraPose& eye, const UtcTime& now
 }
 
 std::function<std::shared_ptr<const SceneGround>()> SceneEdits::GroundAround(
-    const GeodeticPosition& place) const {
+    const Place& place) const {
   constexpr int kMostSamples = 3000;
   return [sample = painter_.land().ground().Sampler(), place,
           half_width_m = HalfWidthOfLand(painter_.land().tiles().lattice(), place),
           ellipsoid = EllipsoidOf(scene_.medium)]() -> std::shared_ptr<const SceneGround> {
-    GeodeticPosition foot = place;
+    Place foot = place;
     foot.height_m = 0.0;
     const LocalFrame frame(ellipsoid, foot);
     const std::optional<ElevationGrid> grid = sample(place, half_width_m, kMostSamples);
@@ -220,7 +221,7 @@ void Standpoint::StandOnGround() {
   controller_.pilot().PutAt(stands, controller_.ground());
 }
 
-void Standpoint::Place(const EyePlacement& placement) {
+void Standpoint::MoveTo(const EyePlacement& placement) {
   const bool moves = placement.latitude_deg || placement.longitude_deg;
   if (!moves && !placement.height_m && !placement.heading_deg && !placement.pitch_deg) return;
   const GroundHeight& ground = controller_.ground();

@@ -35,27 +35,27 @@ class SceneEdits {
 
   /// Changes the air.
   /// @param place  of the eye: the medium lies on the sphere under it.
-  void Use(const AirChoice& choice, const GeodeticPosition& place);
+  void Use(const AirChoice& choice, const Place& place);
   /// Uses the planet of a preset, with the changes that were made to the medium of the previous
   /// planet. Throws InputError for a preset with another shape of the planet.
-  void UsePlanet(const std::string& preset, const GeodeticPosition& place);
+  void UsePlanet(const std::string& preset, const Place& place);
 
   /// Selects the built-in mountain range for a place that the current one does not cover: the range
   /// of the scene if that covers the place, otherwise RangeSeenFrom the place. It is read while
   /// drawing continues. Other land is not moved.
-  void BringRangeTo(const GeodeticPosition& place);
+  void BringRangeTo(const Place& place);
   /// Does the same for a place of this name where the eye arrives. If no land reaches the place, a
   /// note is added.
-  void BringLandTo(const GeodeticPosition& place, const std::string& name);
+  void BringLandTo(const Place& place, const std::string& name);
   /// Returns whether the built-in mountain range will be loaded near its view at a place; the
   /// height of its ground there is known in advance.
-  [[nodiscard]] bool IsRangeExpectedAt(const GeodeticPosition& place) const;
+  [[nodiscard]] bool IsRangeExpectedAt(const Place& place) const;
   /// Returns the height of the ground under a place [m]. Without land it returns the height of the
   /// bare planet. Near the view of the built-in mountain range it returns the known height before
   /// the range is loaded.
-  [[nodiscard]] double GroundAt(const GeodeticPosition& place) const;
+  [[nodiscard]] double GroundAt(const Place& place) const;
   /// Waits until the land at a place is loaded, if there is any.
-  void AwaitGround(const GeodeticPosition& place);
+  void AwaitGround(const Place& place);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Landscape& land() const { return painter_.land(); }
@@ -76,7 +76,7 @@ class SceneEdits {
   /// models; for those it holds the land that is loaded around the eye.
   [[nodiscard]] ReferenceScene ForRenderer(const CameraPose& eye, const UtcTime& now) const;
   /// Returns the name of the time zone at a place.
-  [[nodiscard]] std::string ZoneAt(const GeodeticPosition& place) const;
+  [[nodiscard]] std::string ZoneAt(const Place& place) const;
   /// Returns new notes about land and places. Each note is returned once.
   [[nodiscard]] std::vector<std::string> PollNotes();
 
@@ -85,7 +85,7 @@ class SceneEdits {
   void UseRange(const TerrainSource& range);
   /// Returns a function that samples the loaded land around the eye for the renderer.
   [[nodiscard]] std::function<std::shared_ptr<const SceneGround>()> GroundAround(
-      const GeodeticPosition& place) const;
+      const Place& place) const;
 
   SkyPainter& painter_;
   Scene scene_;
@@ -109,7 +109,7 @@ class Standpoint {
 
   /// Places the eye. If the placement has no height, the eye keeps its height over the ground. It
   /// is never placed inside the ground. Land is brought to the place (SceneEdits).
-  void Place(const EyePlacement& placement);
+  void MoveTo(const EyePlacement& placement);
   /// Places the eye at a named place of the list. Throws InputError for an unknown name.
   void GoTo(const std::string& name);
   /// Puts an eye whose height is given above ground at its final height. Waits for the land there

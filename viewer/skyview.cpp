@@ -38,9 +38,9 @@ void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
   LandSource land;
   for (const std::string& file : options.dem) land.files.emplace_back(file);
   const LandTiles tiles(land);
-  const GeodeticPosition middle = tiles.Middle();
-  if (!typed.latitude) typed.latitude = middle.latitude_rad / kRadiansPerDegree;
-  if (!typed.longitude) typed.longitude = middle.longitude_rad / kRadiansPerDegree;
+  const Place middle = tiles.Middle();
+  if (!typed.latitude) typed.latitude = middle.latitude_deg;
+  if (!typed.longitude) typed.longitude = middle.longitude_deg;
   if (!options.altitude) typed.above_ground_m = 300.0;
 }
 
@@ -57,9 +57,9 @@ Scene SceneOf(const SkyviewOptions& options, const std::optional<Track>& track) 
   typed.pitch = options.pitch;
   typed.dem = options.dem;
   if (track && !typed.place && !typed.latitude && !typed.longitude) {
-    const GeodeticPosition middle = track->points[track->points.size() / 2].place;
-    typed.latitude = middle.latitude_rad / kRadiansPerDegree;
-    typed.longitude = middle.longitude_rad / kRadiansPerDegree;
+    const Place middle = track->points[track->points.size() / 2].place;
+    typed.latitude = middle.latitude_deg;
+    typed.longitude = middle.longitude_deg;
   }
   StandOverTheLand(options, typed);
   Scene scene = SceneFromOptions(typed);
@@ -81,8 +81,8 @@ EyePlacement PlacementOf(const SkyviewOptions& options) {
 
 UtcTime StartOf(const SkyviewOptions& options, const Scene& scene) {
   if (!options.time && scene.time) return *scene.time;
-  GeodeticPosition place = options.place ? PlaceNamed(*options.place).place
-                                         : Placed({scene.place}, PlacementOf(options)).place;
+  Place place = options.place ? PlaceNamed(*options.place).place
+                              : Placed({scene.place}, PlacementOf(options)).place;
   place.height_m = 0.0;  // as in skyseries, events are those at sea level
   const EventDay day{place, scene.zone, scene.time.value_or(ParseInstant("2026-06-21T12:00:00Z"))};
   return InstantFromText(options.time.value_or("noon"), day);
@@ -270,7 +270,7 @@ Track ReadTrackWithNote(const std::string& file) {
 CameraPath PathOfTrack(const Track& track, const Scene& scene, FlightSession& flight) {
   TrackStyle style;
   style.fov_rad = scene.camera.fov_rad;
-  return PathAlong(track, style, [&](const GeodeticPosition& place) {
+  return PathAlong(track, style, [&](const Place& place) {
     flight.edits().AwaitGround(place);
     return flight.edits().GroundAt(place);
   });
@@ -279,15 +279,14 @@ CameraPath PathOfTrack(const Track& track, const Scene& scene, FlightSession& fl
 /// Throws InputError with the file and the point if a point of a path is below the ground.
 void RequirePointsOver(const CameraPath& path, const std::string& file,
                        const GroundHeight& ground) {
-  CheckPoints(path, file,
-              [&](const GeodeticPosition& place) { RequireOverGround(place, ground(place)); });
+  CheckPoints(path, file, [&](const Place& place) { RequireOverGround(place, ground(place)); });
 }
 
 /// Checks a path over land, for which it waits. A mesh is not checked, because it may have caves.
 void RequireOverLand(const CameraPath& path, const std::string& file, const Scene& scene,
                      FlightSession& flight) {
   if (scene.terrain.kind == TerrainSource::Kind::kMesh) return;
-  RequirePointsOver(path, file, [&](const GeodeticPosition& place) {
+  RequirePointsOver(path, file, [&](const Place& place) {
     flight.edits().AwaitGround(place);
     return flight.edits().GroundAt(place);
   });
@@ -328,7 +327,7 @@ int Run(const SkyviewOptions& options) {
       {LandSourceOf(scene), QualityRuleFromText(options.quality), options.frame_rate, size,
        std::nullopt, FlightExposureFromText(options.exposure), LookFromTexts(options.look),
        first_air.valid() ? first_air.get() : FirstAir()});
-  flight.standpoint().Place(PlacementOf(options));
+  flight.standpoint().MoveTo(PlacementOf(options));
   if (options.place) flight.standpoint().GoTo(*options.place);
   if (options.track) {
     const Track track = ReadTrackWithNote(*options.track);

@@ -179,9 +179,9 @@ void ViewerApp::ToggleLandingLight() {
   Report(is_on ? "landing light on" : "landing light off");
 }
 
-void ViewerApp::Place(const EyePlacement& placement) {
+void ViewerApp::MoveTo(const EyePlacement& placement) {
   Try([&] {
-    flight_.standpoint().Place(placement);
+    flight_.standpoint().MoveTo(placement);
     flight_.standpoint().AwaitGround();
   });
 }
@@ -329,7 +329,8 @@ HudFlight FlightOf(FlightSession& flight) {
   shown.fov_rad = eye.fov_rad;
   const double height_m = std::max(eye.place.height_m, 0.0);
   shown.horizon_dip_rad =
-      SkyViewMap(OnOsculatingSphere(flight.edits().planet(), eye.place.latitude_rad), height_m, 1.0)
+      SkyViewMap(OnOsculatingSphere(flight.edits().planet(), eye.place.latitude_rad()), height_m,
+                 1.0)
           .horizon_zenith_angle_rad() -
       0.5 * kPi;
   shown.ground_speed_m_per_s = readout.speed_m_per_s;
@@ -413,8 +414,8 @@ HudModel ReadInstruments(FlightSession& flight) {
   model.flight = FlightOf(flight);
   if (const PilotedAircraft* aircraft = flight.controller().pilot().aircraft())
     model.autopilot = aircraft->autopilot().targets();
-  model.latitude_rad = flight.eye().place.latitude_rad;
-  model.longitude_rad = flight.eye().place.longitude_rad;
+  model.latitude_deg = flight.eye().place.latitude_deg;
+  model.longitude_deg = flight.eye().place.longitude_deg;
   model.time = TimeOf(flight);
   model.sky = SkyOf(*flight.frames().SkyAt(flight.eye().place, flight.now()));
   model.exposure = ExposureOf(flight.exposure());

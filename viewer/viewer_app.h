@@ -83,7 +83,7 @@ class ViewerApp final : public FlightCommands {
   }
   void Use(const AirChoice& choice) override;
   void ToggleLandingLight() override;
-  void Place(const EyePlacement& placement) override;
+  void MoveTo(const EyePlacement& placement) override;
   void GoTo(const std::string& place) override;
   void SetTime(const std::string& text) override;
   void Request(const PictureOrder& picture) override;

@@ -7,13 +7,7 @@
 
 #include <string_view>
 
-#include "atmosphere/time_place/geodesy.h"
-#include "atmosphere/time_place/time.h"
-
 namespace alpenglow {
-
-/// Returns the place. Throws InputError as PlaceFromDegrees does.
-[[nodiscard]] atmosphere::GeodeticPosition GeodeticFromPlace(const Place& place);
 
 /// Returns the time. Throws InputError for a year outside [kFirstYear, kLastYear] and for a second
 /// that its day does not have.

@@ -16,6 +16,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/refraction/observer_refraction.h"
 #include "atmosphere/refraction/refracted_view.h"
+#include "atmosphere/time_place/geodesy.h"
 
 namespace alpenglow {
 
@@ -35,7 +36,7 @@ Direction Towards(double elevation_deg, double azimuth_deg) {
 atmosphere::BendingAir AirAt(const Atmosphere& atmosphere, const Place& place) {
   const atmosphere::Medium& medium = atmosphere.medium();
   return atmosphere::GentleAirOf(
-      medium, atmosphere::OsculatingRadius(medium, GeodeticFromPlace(place).latitude_rad));
+      medium, atmosphere::OsculatingRadius(medium, atmosphere::CheckedPlace(place).latitude_rad()));
 }
 
 }  // namespace
@@ -59,10 +60,6 @@ void RequireValid(const SunInSky& sun) {
   RequireInRange(sun.lower_for_air_deg, -90.0, 90.0, "sun.lower_for_air_deg");
 }
 
-atmosphere::GeodeticPosition GeodeticFromPlace(const Place& place) {
-  return atmosphere::PlaceFromDegrees(place.latitude_deg, place.longitude_deg, place.height_m);
-}
-
 Direction SunInSky::ToSun() const {
   RequireValid(*this);
   return Towards(elevation_deg, azimuth_deg);
@@ -79,7 +76,7 @@ Direction SunInSky::ToSunForAir() const {
 
 SunInSky SunAt(const Place& place, const UtcTime& time, const Atmosphere& atmosphere) {
   const atmosphere::SunPosition sun = atmosphere::ApparentSunAt(
-      GeodeticFromPlace(place), RequireValid(time), AirAt(atmosphere, place));
+      atmosphere::CheckedPlace(place), RequireValid(time), AirAt(atmosphere, place));
   return {sun.elevation_rad / kRadiansPerDegree, sun.azimuth_rad / kRadiansPerDegree,
           sun.distance_au, sun.angular_radius_rad / kRadiansPerDegree,
           sun.lower_for_air_rad / kRadiansPerDegree};
@@ -87,7 +84,7 @@ SunInSky SunAt(const Place& place, const UtcTime& time, const Atmosphere& atmosp
 
 MoonInSky MoonAt(const Place& place, const UtcTime& time, const Atmosphere& atmosphere) {
   const atmosphere::MoonPosition moon = atmosphere::ApparentMoonAt(
-      GeodeticFromPlace(place), RequireValid(time), AirAt(atmosphere, place));
+      atmosphere::CheckedPlace(place), RequireValid(time), AirAt(atmosphere, place));
   return {moon.elevation_rad / kRadiansPerDegree,
           moon.azimuth_rad / kRadiansPerDegree,
           moon.distance_m,
@@ -104,7 +101,7 @@ std::optional<UtcTime> SunEventTime(std::string_view event, const Place& place,
                      "\" is no event of the sun; use noon, sunrise, sunset, or civil-, nautical- "
                      "or astronomical-dawn or -dusk");
   }
-  return atmosphere::FindSunEvent(*known, GeodeticFromPlace(place), RequireValid(around));
+  return atmosphere::FindSunEvent(*known, atmosphere::CheckedPlace(place), RequireValid(around));
 }
 
 }  // namespace alpenglow

@@ -264,7 +264,7 @@ EarthAndSun EarthAndSunAt(const UtcTime& instant, double delta_t_s) {
   return EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s)).bodies;
 }
 
-ApparentPlace SeenFrom(const GeodeticPosition& place, const glm::dmat3& ecef_from_gcrs,
+ApparentPlace SeenFrom(const Place& place, const glm::dmat3& ecef_from_gcrs,
                        const EarthAndSun& bodies, const BodyState& body) {
   const LocalFrame frame(kWgs84, place);
   const BodyState observer =
@@ -288,7 +288,7 @@ BodyState MoonFromEarth(const TerrestrialTime& time) {
   return {position, (PositionAt(centuries(kMinute)) - position) / kMinute};
 }
 
-std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place, const UtcTime& instant) {
+std::array<PointLight, 5> PlanetsAt(const Place& place, const UtcTime& instant) {
   const double delta_t_s = DeltaT(instant);
   const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
   const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, delta_t_s);

@@ -62,9 +62,8 @@ struct ApparentPlace {
 };
 
 /// Returns the apparent place of a body. All arguments must be for the same instant.
-[[nodiscard]] ApparentPlace SeenFrom(const GeodeticPosition& place,
-                                     const glm::dmat3& ecef_from_gcrs, const EarthAndSun& bodies,
-                                     const BodyState& body);
+[[nodiscard]] ApparentPlace SeenFrom(const Place& place, const glm::dmat3& ecef_from_gcrs,
+                                     const EarthAndSun& bodies, const BodyState& body);
 
 /// A time in TT in ERFA's format: a day and the elapsed fraction of it.
 struct TerrestrialTime {
@@ -87,7 +86,6 @@ struct PointLight {
 
 /// Returns Mercury, Venus, Mars, Jupiter, Saturn, seen from a place. Errors of magnitudes: 0.2, for
 /// Saturn 0.3.
-[[nodiscard]] std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place,
-                                                  const UtcTime& instant);
+[[nodiscard]] std::array<PointLight, 5> PlanetsAt(const Place& place, const UtcTime& instant);
 
 }  // namespace alpenglow::atmosphere

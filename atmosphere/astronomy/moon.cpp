@@ -89,10 +89,10 @@ constexpr int kSteps = static_cast<int>(30.0 * kSecondsPerDay / kStep_s);
 /// Elevation of the upper limb above the sea horizon [rad], some seconds after an instant.
 class LimbOverHorizon {
  public:
-  LimbOverHorizon(const GeodeticPosition& place, const UtcTime& from)
+  LimbOverHorizon(const Place& place, const UtcTime& from)
       : place_(place),
         from_(from),
-        horizon_rad_(SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad))
+        horizon_rad_(SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad()))
                          .true_elevation_rad) {}
 
   double operator()(double after_s) const {
@@ -101,7 +101,7 @@ class LimbOverHorizon {
   }
 
  private:
-  GeodeticPosition place_;
+  Place place_;
   UtcTime from_;
   double horizon_rad_;
 };
@@ -132,8 +132,7 @@ std::vector<Sample> SamplesOfStep(const LimbOverHorizon& limb, const Sample& bef
   return {here, {turn_s, limb(turn_s)}, next};
 }
 
-std::optional<UtcTime> NextChange(const GeodeticPosition& place, const UtcTime& after,
-                                  bool rising) {
+std::optional<UtcTime> NextChange(const Place& place, const UtcTime& after, bool rising) {
   const LimbOverHorizon limb(place, after);
   Sample before{-kStep_s, limb(-kStep_s)}, here{0.0, limb(0.0)};
   for (int step = 0; step < kSteps; ++step) {
@@ -153,11 +152,11 @@ std::optional<UtcTime> NextChange(const GeodeticPosition& place, const UtcTime& 
 
 double MoonPosition::IlluminatedFraction() const { return 0.5 * (1.0 + std::cos(phase_angle_rad)); }
 
-MoonPosition MoonAt(const GeodeticPosition& place, const UtcTime& instant) {
+MoonPosition MoonAt(const Place& place, const UtcTime& instant) {
   return MoonAt(place, instant, DeltaT(instant));
 }
 
-MoonPosition MoonAt(const GeodeticPosition& place, const UtcTime& instant, double delta_t_s) {
+MoonPosition MoonAt(const Place& place, const UtcTime& instant, double delta_t_s) {
   const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
   const BodyState moon = MoonOf(bodies.earth, instant, delta_t_s);
   const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, delta_t_s);
@@ -180,12 +179,11 @@ MoonPosition MoonAt(const GeodeticPosition& place, const UtcTime& instant, doubl
           PositionAngle(to_sun.xyz, seen.direction.xyz)};
 }
 
-MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcTime& instant) {
+MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant) {
   return ApparentMoonAt(place, instant, AlmanacAir());
 }
 
-MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcTime& instant,
-                            const BendingAir& air) {
+MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant, const BendingAir& air) {
   return Refracted(MoonAt(place, instant), place.height_m, air);
 }
 
@@ -195,18 +193,18 @@ LightDirection DirectionOf(const MoonPosition& apparent) {
           DirectionFromAngles(for_air_rad, apparent.azimuth_rad).xyz};
 }
 
-std::optional<UtcTime> NextMoonrise(const GeodeticPosition& place, const UtcTime& after) {
+std::optional<UtcTime> NextMoonrise(const Place& place, const UtcTime& after) {
   return NextChange(place, after, true);
 }
 
-std::optional<UtcTime> NextMoonset(const GeodeticPosition& place, const UtcTime& after) {
+std::optional<UtcTime> NextMoonset(const Place& place, const UtcTime& after) {
   return NextChange(place, after, false);
 }
 
-UtcTime NextMoonTransit(const GeodeticPosition& place, const UtcTime& after) {
+UtcTime NextMoonTransit(const Place& place, const UtcTime& after) {
   const auto hour_angle = [&](double after_s) {
     const glm::dvec3 moon = MoonAt(place, AddSeconds(after, after_s)).direction.xyz;
-    return WrappedLongitude(place.longitude_rad - std::atan2(moon.y, moon.x));
+    return std::remainder(place.longitude_rad() - std::atan2(moon.y, moon.x), 2.0 * kPi);
   };
   // The hour angle increases, except for the jump from half a turn to minus half a turn at the
   // lower transit.
@@ -228,8 +226,7 @@ std::optional<MoonEvent> MoonEventFromName(std::string_view name) {
   return kNames.Find(name);
 }
 
-std::optional<UtcTime> NextMoonEvent(MoonEvent event, const GeodeticPosition& place,
-                                     const UtcTime& after) {
+std::optional<UtcTime> NextMoonEvent(MoonEvent event, const Place& place, const UtcTime& after) {
   switch (event) {
     case MoonEvent::kMoonrise:
       return NextMoonrise(place, after);

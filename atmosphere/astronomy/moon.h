@@ -66,16 +66,15 @@ struct MoonPosition {
 /// Returns the position of the moon. ELP/MPP02 (ephemeris.h; within an arcsecond and 3 km 1950-2100
 /// where delta-T is known; one second of delta-T is half an arcsecond), IAU 2006/2000A
 /// precession-nutation, light time, aberration and parallax.
-[[nodiscard]] MoonPosition MoonAt(const GeodeticPosition& place, const UtcTime& instant);
+[[nodiscard]] MoonPosition MoonAt(const Place& place, const UtcTime& instant);
 /// Returns the position of the moon for a given TT - UT1 [s].
-[[nodiscard]] MoonPosition MoonAt(const GeodeticPosition& place, const UtcTime& instant,
-                                  double delta_t_s);
+[[nodiscard]] MoonPosition MoonAt(const Place& place, const UtcTime& instant, double delta_t_s);
 
 /// Returns the moon with refraction as seen from the place's height, like ApparentSunAt (sun.h).
 /// Only its elevation and lower_for_air_rad differ from those of MoonAt.
-[[nodiscard]] MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcTime& instant);
+[[nodiscard]] MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant);
 /// Returns the moon with refraction by any air that bends rays gently.
-[[nodiscard]] MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcTime& instant,
+[[nodiscard]] MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant,
                                           const BendingAir& air);
 
 /// Returns the direction of an apparent moon in the frame east, north, up of the place.
@@ -85,13 +84,11 @@ struct MoonPosition {
 /// horizon seen from the place's height (dip), or vanishes below it; std::nullopt if this does not
 /// happen within 30 days: every month has days of moonrise everywhere except within half a degree
 /// of the poles. Error of the search below 0.1 s.
-[[nodiscard]] std::optional<UtcTime> NextMoonrise(const GeodeticPosition& place,
-                                                  const UtcTime& after);
-[[nodiscard]] std::optional<UtcTime> NextMoonset(const GeodeticPosition& place,
-                                                 const UtcTime& after);
+[[nodiscard]] std::optional<UtcTime> NextMoonrise(const Place& place, const UtcTime& after);
+[[nodiscard]] std::optional<UtcTime> NextMoonset(const Place& place, const UtcTime& after);
 /// Returns the next instant after `after` at which the centre passes the meridian on the upper
 /// side. Error of the search below 0.1 s.
-[[nodiscard]] UtcTime NextMoonTransit(const GeodeticPosition& place, const UtcTime& after);
+[[nodiscard]] UtcTime NextMoonTransit(const Place& place, const UtcTime& after);
 
 /// Events of the moon.
 enum class MoonEvent { kMoonrise, kMoonset, kMoonTransit };
@@ -100,7 +97,7 @@ enum class MoonEvent { kMoonrise, kMoonset, kMoonTransit };
 [[nodiscard]] std::optional<MoonEvent> MoonEventFromName(std::string_view name);
 
 /// Returns the next instant of an event after `after`, by the three functions above.
-[[nodiscard]] std::optional<UtcTime> NextMoonEvent(MoonEvent event, const GeodeticPosition& place,
+[[nodiscard]] std::optional<UtcTime> NextMoonEvent(MoonEvent event, const Place& place,
                                                    const UtcTime& after);
 
 /// The disk of the moon, with directions in any one frame.

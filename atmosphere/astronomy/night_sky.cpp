@@ -186,7 +186,7 @@ double Starlight(double longitude_rad, double latitude_rad) {
   return (disk + bulge) * dust;
 }
 
-NightSky::NightSky(const GeodeticPosition& place, const UtcTime& instant) {
+NightSky::NightSky(const Place& place, const UtcTime& instant) {
   const double delta_t_s = DeltaT(instant);
   const LocalFrame frame(kWgs84, place);
   const auto axis = [&](const glm::dvec3& enu) { return frame.EcefFromEnu(Vector<Enu>{enu}).xyz; };

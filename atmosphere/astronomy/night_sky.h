@@ -93,7 +93,7 @@ struct NightRadiance {
 /// Orientation of the sky over a place. Its frame can be rotated together with that of the picture.
 class NightSky {
  public:
-  NightSky(const GeodeticPosition& place, const UtcTime& instant);
+  NightSky(const Place& place, const UtcTime& instant);
 
   /// @param frame_from_enu  a rotation.
   [[nodiscard]] NightSky InFrame(const glm::dmat3& frame_from_enu) const;

@@ -52,7 +52,7 @@ double LightBetween(double low, double high, double wavelength_nm) {
 /// Sun and moon at a place, some seconds after an instant.
 class Pair {
  public:
-  Pair(const GeodeticPosition& place, const UtcTime& from) : place_(place), from_(from) {}
+  Pair(const Place& place, const UtcTime& from) : place_(place), from_(from) {}
 
   /// Returns the squared distance of the centres on the unit sphere.
   [[nodiscard]] double Chord2(double after_s) const {
@@ -83,7 +83,7 @@ class Pair {
     return MoonAt(place_, AddSeconds(from_, after_s));
   }
 
-  GeodeticPosition place_;
+  Place place_;
   UtcTime from_;
 };
 
@@ -141,16 +141,16 @@ double UncoveredLight(const EclipsedDisk& disk, double wavelength_nm) {
   return std::min(light, 1.0);
 }
 
-SolarEclipse::Moment EclipseAt(const GeodeticPosition& place, const UtcTime& instant) {
+SolarEclipse::Moment EclipseAt(const Place& place, const UtcTime& instant) {
   const SunPosition sun = SunAt(place, instant);
   const double horizon_rad =
-      SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad))
+      SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad()))
           .true_elevation_rad;
   return {instant, EclipsedDiskOf(sun, MoonAt(place, instant)),
           sun.elevation_rad + sun.angular_radius_rad - horizon_rad};
 }
 
-std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place, const UtcTime& from,
+std::optional<SolarEclipse> FindSolarEclipse(const Place& place, const UtcTime& from,
                                              double within_s) {
   const Pair pair(place, from);
   // The moon moves away from the sun by 13 degrees a day, and parallax adds one degree.
@@ -230,7 +230,7 @@ MoonDisk SkyBodies::ApparentMoonDisk(const BendingAir& air) const {
   return MoonDiskOf(seen, DirectionOf(seen), frame.EnuFromEcef(seen.to_sun).xyz, sun.distance_au);
 }
 
-SkyBodies SkyBodiesAt(const GeodeticPosition& place, const UtcTime& instant) {
+SkyBodies SkyBodiesAt(const Place& place, const UtcTime& instant) {
   return {place, instant, SunAt(place, instant), MoonAt(place, instant)};
 }
 

@@ -66,7 +66,7 @@ struct SolarEclipse {
 };
 
 /// Returns the state of sun and moon at one instant.
-[[nodiscard]] SolarEclipse::Moment EclipseAt(const GeodeticPosition& place, const UtcTime& instant);
+[[nodiscard]] SolarEclipse::Moment EclipseAt(const Place& place, const UtcTime& instant);
 
 /// Returns the eclipse at a place whose maximum, the least distance of the centres, is within a
 /// number of seconds from an instant. Contacts are defined as in almanacs: the sun's radius is
@@ -76,8 +76,8 @@ struct SolarEclipse {
 /// Besselian elements for 2026 August 12 in Spain. Outside 1960-2026 an error of one second in
 /// delta-T shifts them by up to a second.
 /// @param within_s  > 0, 2 days at most.
-[[nodiscard]] std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place,
-                                                           const UtcTime& from, double within_s);
+[[nodiscard]] std::optional<SolarEclipse> FindSolarEclipse(const Place& place, const UtcTime& from,
+                                                           double within_s);
 
 /// Events of an eclipse of the sun.
 enum class EclipseEvent { kFirstContact, kSecondContact, kMaximum, kThirdContact, kLastContact };
@@ -98,7 +98,7 @@ enum class EclipseEvent { kFirstContact, kSecondContact, kMaximum, kThirdContact
 
 /// Sun and moon without refraction.
 struct SkyBodies {
-  GeodeticPosition place;
+  Place place;
   UtcTime instant;
   SunPosition sun;
   MoonPosition moon;
@@ -115,6 +115,6 @@ struct SkyBodies {
   [[nodiscard]] MoonDisk ApparentMoonDisk(const BendingAir& air) const;
 };
 
-[[nodiscard]] SkyBodies SkyBodiesAt(const GeodeticPosition& place, const UtcTime& instant);
+[[nodiscard]] SkyBodies SkyBodiesAt(const Place& place, const UtcTime& instant);
 
 }  // namespace alpenglow::atmosphere

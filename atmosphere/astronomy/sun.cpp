@@ -20,11 +20,11 @@
 
 namespace alpenglow::atmosphere {
 
-SunPosition SunAt(const GeodeticPosition& place, const UtcTime& instant) {
+SunPosition SunAt(const Place& place, const UtcTime& instant) {
   return SunAt(place, instant, DeltaT(instant));
 }
 
-SunPosition SunAt(const GeodeticPosition& place, const UtcTime& instant, double delta_t_s) {
+SunPosition SunAt(const Place& place, const UtcTime& instant, double delta_t_s) {
   const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
   const ApparentPlace sun = SeenFrom(place, EcefFromGcrs(instant, delta_t_s), bodies, bodies.sun);
   return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au,
@@ -38,12 +38,11 @@ SunPosition SunForAir(const SunPosition& seen) {
   return sun;
 }
 
-SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcTime& instant) {
+SunPosition ApparentSunAt(const Place& place, const UtcTime& instant) {
   return ApparentSunAt(place, instant, AlmanacAir());
 }
 
-SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcTime& instant,
-                          const BendingAir& air) {
+SunPosition ApparentSunAt(const Place& place, const UtcTime& instant, const BendingAir& air) {
   return Refracted(SunAt(place, instant), place.height_m, air);
 }
 
@@ -123,7 +122,7 @@ struct Crossing {
 };
 
 /// Returns the crossing of every event except noon.
-Crossing CrossingOf(SunEvent event, const GeodeticPosition& place) {
+Crossing CrossingOf(SunEvent event, const Place& place) {
   const auto twilight = [](double degrees, bool rising) {
     return Crossing{degrees * kRadiansPerDegree, false, rising};
   };
@@ -143,13 +142,13 @@ Crossing CrossingOf(SunEvent event, const GeodeticPosition& place) {
     default:
       break;
   }
-  const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad);
+  const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad());
   return {SeaHorizonFrom(place.height_m, radius_m).true_elevation_rad, true,
           event == SunEvent::kSunrise};
 }
 
 /// Returns the elevation of the sun above the elevation of a crossing [rad].
-double HeightOver(const Crossing& crossing, const GeodeticPosition& place, const UtcTime& instant) {
+double HeightOver(const Crossing& crossing, const Place& place, const UtcTime& instant) {
   const SunPosition sun = SunAt(place, instant);
   const double limb_rad = crossing.of_upper_limb ? sun.angular_radius_rad : 0.0;
   return sun.elevation_rad + limb_rad - crossing.true_elevation_rad;
@@ -224,10 +223,10 @@ std::optional<double> FirstChange(const Function& f, bool rising) {
 }
 
 /// The sun's hour angle passes 0 within 17 minutes of mean noon (equation of time).
-double NoonOf(const GeodeticPosition& place, const UtcTime& midnight) {
+double NoonOf(const Place& place, const UtcTime& midnight) {
   const auto hour_angle = [&](double time_s) {
     const glm::dvec3 sun = SunAt(place, AddSeconds(midnight, time_s)).direction.xyz;
-    return WrappedLongitude(place.longitude_rad - std::atan2(sun.y, sun.x));
+    return std::remainder(place.longitude_rad() - std::atan2(sun.y, sun.x), 2.0 * kPi);
   };
   constexpr double kReach_s = 1800.0;
   return BracketedRoot(hour_angle, 0.5 * kSecondsPerDay - kReach_s, 0.5 * kSecondsPerDay + kReach_s,
@@ -238,11 +237,9 @@ double NoonOf(const GeodeticPosition& place, const UtcTime& midnight) {
 
 std::optional<SunEvent> SunEventFromName(std::string_view name) { return kSunEvents.Find(name); }
 
-std::optional<UtcTime> FindSunEvent(SunEvent event, const GeodeticPosition& place,
-                                    const UtcTime& around) {
-  const GeodeticPosition wrapped{place.latitude_rad, WrappedLongitude(place.longitude_rad),
-                                 place.height_m};
-  const UtcTime midnight = MeanSolarMidnight(wrapped.longitude_rad, around);
+std::optional<UtcTime> FindSunEvent(SunEvent event, const Place& place, const UtcTime& around) {
+  const Place wrapped = WithWrappedLongitude(place);
+  const UtcTime midnight = MeanSolarMidnight(wrapped, around);
   if (event == SunEvent::kNoon) return AddSeconds(midnight, NoonOf(wrapped, midnight));
   const Crossing crossing = CrossingOf(event, wrapped);
   const auto height_over_crossing = [&](double time_s) {
@@ -253,7 +250,7 @@ std::optional<UtcTime> FindSunEvent(SunEvent event, const GeodeticPosition& plac
   return AddSeconds(midnight, *time_s);
 }
 
-bool IsAboveEvent(SunEvent event, const GeodeticPosition& place, const UtcTime& instant) {
+bool IsAboveEvent(SunEvent event, const Place& place, const UtcTime& instant) {
   if (event == SunEvent::kNoon) throw InternalError("noon is not at a height of the sun");
   return HeightOver(CrossingOf(event, place), place, instant) >= 0.0;
 }

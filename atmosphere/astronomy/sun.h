@@ -44,17 +44,16 @@ struct SunPosition {
 
 /// Returns the position of the sun. ERFA: IAU 2006/2000A precession-nutation, VSOP-type ephemeris
 /// (eraEpv00), aberration and parallax. Within 2 arcseconds of NREL SPA where delta-T is known.
-[[nodiscard]] SunPosition SunAt(const GeodeticPosition& place, const UtcTime& instant);
+[[nodiscard]] SunPosition SunAt(const Place& place, const UtcTime& instant);
 /// Returns the position of the sun for a given TT - UT1 [s] (published comparisons specify it).
-[[nodiscard]] SunPosition SunAt(const GeodeticPosition& place, const UtcTime& instant,
-                                double delta_t_s);
+[[nodiscard]] SunPosition SunAt(const Place& place, const UtcTime& instant, double delta_t_s);
 
 /// Returns the sun with refraction as seen from the place's height: SunAt, with its elevation
 /// raised by RefractionFromHeight (refraction.h). SunForAir of the result is raised by LiftForAir.
 /// `direction` remains without refraction.
-[[nodiscard]] SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcTime& instant);
+[[nodiscard]] SunPosition ApparentSunAt(const Place& place, const UtcTime& instant);
 /// Returns the sun with refraction by any air that bends rays gently.
-[[nodiscard]] SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcTime& instant,
+[[nodiscard]] SunPosition ApparentSunAt(const Place& place, const UtcTime& instant,
                                         const BendingAir& air);
 
 /// Returns the unit vector of an elevation and azimuth.
@@ -84,14 +83,13 @@ enum class SunEvent {
 /// (polar day and night); the first if there are two. Rise and set: upper limb, refracted, seen
 /// over the sea horizon from the place's height (dip). Twilights: true centre at -6, -12,
 /// -18 degrees. Noon: centre in the meridian. Error of the search below 0.1 s.
-[[nodiscard]] std::optional<UtcTime> FindSunEvent(SunEvent event, const GeodeticPosition& place,
+[[nodiscard]] std::optional<UtcTime> FindSunEvent(SunEvent event, const Place& place,
                                                   const UtcTime& around);
 
 /// Returns whether the sun is above the elevation at which it rises and sets, or begins and ends a
 /// twilight (FindSunEvent), for an event other than noon. On a day without the event, the value at
 /// noon holds for the whole day.
-[[nodiscard]] bool IsAboveEvent(SunEvent event, const GeodeticPosition& place,
-                                const UtcTime& instant);
+[[nodiscard]] bool IsAboveEvent(SunEvent event, const Place& place, const UtcTime& instant);
 
 /// The part of a disk above the geometric horizon.
 struct VisibleDisk {

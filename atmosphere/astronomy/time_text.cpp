@@ -164,7 +164,7 @@ std::optional<std::size_t> EndOfDay(std::string_view text) {
 
 /// Returns the middle between two noons. The sun is lowest then, within the half minute by which
 /// noons are unevenly spaced.
-std::optional<UtcTime> FindMidnight(const GeodeticPosition& place, const UtcTime& around) {
+std::optional<UtcTime> FindMidnight(const Place& place, const UtcTime& around) {
   const auto noon = FindSunEvent(SunEvent::kNoon, place, around);
   const auto next = FindSunEvent(SunEvent::kNoon, place, AddSeconds(around, kSecondsPerDay));
   return AddSeconds(noon.value(), 0.5 * SecondsBetween(noon.value(), next.value()));
@@ -186,7 +186,7 @@ std::optional<UtcTime> FindMoonEvent(MoonEvent event, const UtcTime& around, con
 
 std::optional<UtcTime> FindEclipseEvent(EclipseEvent event, const UtcTime& around,
                                         const EventDay& day) {
-  const UtcTime midnight = MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), around);
+  const UtcTime midnight = MeanSolarMidnight(day.place, around);
   const auto eclipse = FindSolarEclipse(day.place, midnight, kSecondsPerDay);
   return eclipse ? InstantOf(event, *eclipse) : std::nullopt;
 }
@@ -204,10 +204,9 @@ std::string WhyNot(SunEvent event, const EventDay& day) {
 
 std::string NoSuchEvent(std::string_view text, const EventDay& day) {
   const EventText parts = SplitEvent(text);
-  std::string fault =
-      fmt::format("time \"{}\": there is no {} on {} at latitude {:.4f}, longitude {:.4f}", text,
-                  parts.name, DateAt(*day.around, day), day.place.latitude_rad / kRadiansPerDegree,
-                  day.place.longitude_rad / kRadiansPerDegree);
+  std::string fault = fmt::format(
+      "time \"{}\": there is no {} on {} at latitude {:.4f}, longitude {:.4f}", text, parts.name,
+      DateAt(*day.around, day), day.place.latitude_deg, day.place.longitude_deg);
   if (EclipseEventFromName(parts.name)) return fault + ": no such eclipse of the sun";
   if (const std::optional<SunEvent> sun = SunEventFromName(parts.name))
     return fault + WhyNot(*sun, day);
@@ -344,9 +343,7 @@ std::vector<UtcTime> EventOfEachDay(const TimesText& times, const Step& every,
   if (!first.around) throw InputError("an event of each day needs a first day: give --date");
   const UtcTime last =
       IsDayText(*times.to) ? DayFromText(*times.to, day) : InstantFromText(*times.to, first);
-  const auto midnight = [&](const UtcTime& of) {
-    return MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), of);
-  };
+  const auto midnight = [&](const UtcTime& of) { return MeanSolarMidnight(day.place, of); };
   const double span_s = SecondsBetween(midnight(*first.around), midnight(last));
   if (span_s < 0.0) RefuseDayBefore(times);
   std::vector<UtcTime> instants;
@@ -378,7 +375,7 @@ std::vector<UtcTime> CountBetween(const UtcTime& from, double span_s, int count)
 
 std::string DateAt(const UtcTime& instant, const EventDay& day) {
   if (day.zone) return FormatInZone(instant, *day.zone).substr(0, kDateLength);
-  const double turns = WrappedLongitude(day.place.longitude_rad) / (2.0 * kPi);
+  const double turns = WrappedLongitude(day.place.longitude_deg) / 360.0;
   return FormatUtc(AddSeconds(instant, kSecondsPerDay * turns)).substr(0, kDateLength);
 }
 
@@ -395,7 +392,7 @@ UtcTime DayFromText(std::string_view date, const EventDay& day) {
   }
   const std::string noon = fmt::format("{}T12:00:00", date);
   if (day.zone) return ParseInstant(noon, day.zone);
-  const double turns = WrappedLongitude(day.place.longitude_rad) / (2.0 * kPi);
+  const double turns = WrappedLongitude(day.place.longitude_deg) / 360.0;
   return AddSeconds(ParseInstant(noon + "Z"), -kSecondsPerDay * turns);
 }
 

@@ -15,7 +15,7 @@ namespace alpenglow::atmosphere {
 
 /// Place and day of "sunrise" and "18:30".
 struct EventDay {
-  GeodeticPosition place;
+  Place place;
   std::optional<std::string> zone;  // zone of local times, IANA
   std::optional<UtcTime> around;    // any instant of the day; required by events and clock times
   UtcTime now = Now();              // reference of "now", "today", "tomorrow", "yesterday"

@@ -12,15 +12,15 @@ namespace {
 
 using Extended = long double;
 
-struct Place {
+struct ExtendedPoint {
   Extended x, y, z;
 };
 
-Place At(const glm::dvec3& origin, const glm::dvec3& direction, Extended t) {
+ExtendedPoint At(const glm::dvec3& origin, const glm::dvec3& direction, Extended t) {
   return {origin.x + t * direction.x, origin.y + t * direction.y, origin.z + t * direction.z};
 }
 
-Extended Altitude(const LampAir& air, const Place& p) {
+Extended Altitude(const LampAir& air, const ExtendedPoint& p) {
   return air.altitude_at_origin_m + air.up.x * p.x + air.up.y * p.y + air.up.z * p.z;
 }
 
@@ -36,7 +36,7 @@ Extended Column(const LampLayer& layer, Extended length, Extended a, Extended b)
 /// The ray, and the position of the lamp relative to it.
 struct Geometry {
   Extended nearest, approach;  // distance along the ray to the nearest point; its distance
-  Place across;                // unit vector, from the lamp to the ray's nearest point
+  ExtendedPoint across;        // unit vector, from the lamp to the ray's nearest point
 
   Geometry(const Lamp& lamp, const LampSegment& segment) {
     const glm::dvec3& o = segment.origin_m;
@@ -124,14 +124,14 @@ std::vector<double> Breakpoints(const Lamp& lamp, const LampSegment& segment,
 LampLight AirlightAlong(const LampAir& air, const Lamp& lamp, const LampSegment& segment) {
   const Geometry geometry(lamp, segment);
   const std::size_t bands = air.bands();
-  const Place lamp_place = At(lamp.position_m, {0.0, 0.0, 0.0}, 0);
+  const ExtendedPoint lamp_place = At(lamp.position_m, {0.0, 0.0, 0.0}, 0);
   double end = segment.end_m;
   if (std::isinf(end)) {
     end = static_cast<double>(1e12L * (geometry.approach + std::abs(geometry.nearest)));
   }
   const auto source = [&](double distance) {
     const Extended t = distance;
-    const Place p = At(segment.origin_m, segment.direction, t);
+    const ExtendedPoint p = At(segment.origin_m, segment.direction, t);
     const Extended z = Altitude(air, p);
     const Extended along = t - geometry.nearest;
     const Extended d = std::sqrt(along * along + geometry.approach * geometry.approach);

@@ -72,19 +72,19 @@ inline ColumnTable::Cubic ColumnTable::CubicAt(double x, int count) {
           t * (t - 1.0) * (t - 2.0) / 6.0};
 }
 
-ColumnTable::Place ColumnTable::PlaceAt(double radius_m, double s_m) const {
+ColumnTable::LinePoint ColumnTable::PlaceAt(double radius_m, double s_m) const {
   const double h = radius_m - planet_radius_m_;
   const double y = h / radius_m * top_radius_m_ / (top_radius_m_ - planet_radius_m_);
   return {radius_m, s_m, h, CubicAt(y * (kRadii - 1), kRadii)};
 }
 
-double ColumnTable::MoleculesBeyond(const Place& place) const {
+double ColumnTable::MoleculesBeyond(const LinePoint& place) const {
   const double column = Beyond(rayleigh_, place);
   if (deficit_share_ == 0.0) return column;
   return (1.0 + deficit_share_) * column - deficit_share_ * Beyond(deficit_, place);
 }
 
-double ColumnTable::Beyond(const Layer& layer, const Place& place) {
+double ColumnTable::Beyond(const Layer& layer, const LinePoint& place) {
   const double root = std::sqrt(place.radius_m * layer.scale_height_m);
   const double t = place.s_m / (root * std::numbers::sqrt2);
   const Cubic& across = place.across;
@@ -156,7 +156,7 @@ AirColumns ColumnTable::Primitive(const Line& line, double s_m) const {
   // Below altitude 0 air has the density of altitude 0.
   const double s_ground = std::sqrt(std::max((planet_radius_m_ - p) * (planet_radius_m_ + p), 0.0));
   const double below = std::max(s_ground - s, 0.0), s_above = s + below;
-  const Place place = PlaceAt(std::sqrt(p * p + s_above * s_above), s_above);
+  const LinePoint place = PlaceAt(std::sqrt(p * p + s_above * s_above), s_above);
   AirColumns columns{MoleculesBeyond(place) + below, Beyond(mie_, place) + below, 0.0};
   if (!has_ozone_ || s <= line.ozone_edge_m[0]) return columns;
   if (ozone_.shape == OzoneShape::kSmooth) {

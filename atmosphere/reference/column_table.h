@@ -77,13 +77,13 @@ class ColumnTable {
   [[nodiscard]] static Cubic CubicAt(double x, int count);
 
   /// A point on a line, and its interpolation between the radii of the tables.
-  struct Place {
+  struct LinePoint {
     double radius_m, s_m, height_m;
     Cubic across;
   };
-  [[nodiscard]] Place PlaceAt(double radius_m, double s_m) const;
-  [[nodiscard]] static double Beyond(const Layer& layer, const Place& place);
-  [[nodiscard]] double MoleculesBeyond(const Place& place) const;
+  [[nodiscard]] LinePoint PlaceAt(double radius_m, double s_m) const;
+  [[nodiscard]] static double Beyond(const Layer& layer, const LinePoint& place);
+  [[nodiscard]] double MoleculesBeyond(const LinePoint& place) const;
   [[nodiscard]] double SmoothOzoneUpTo(const Line& line, double s_m) const;
   [[nodiscard]] double OzoneSide(const Line& line, std::size_t side, double s_m) const;
 

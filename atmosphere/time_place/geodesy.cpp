@@ -22,15 +22,15 @@ struct Orientation {
   double sin_latitude, cos_latitude, sin_longitude, cos_longitude;
 };
 
-Orientation OrientationOf(const GeodeticPosition& place) {
-  // pi / 2 in double divided by a degree in double may differ from 90 by a rounding error, and
-  // GeographicLib returns NaN beyond 90. A larger excess is an error of the caller.
+Orientation OrientationOf(const Place& place) {
+  // Quotients of radians may differ from 90 degrees by a rounding error, and GeographicLib returns
+  // NaN beyond 90. A larger excess is an error of the caller.
   constexpr double kRounding_degrees = 1e-12;
   Orientation result;
-  const double latitude = place.latitude_rad / kRadiansPerDegree;
-  RequireInRange(latitude, -90.0 - kRounding_degrees, 90.0 + kRounding_degrees, "latitude");
-  result.latitude_degrees = std::clamp(latitude, -90.0, 90.0);
-  result.longitude_degrees = WrappedLongitude(place.longitude_rad) / kRadiansPerDegree;
+  RequireInRange(place.latitude_deg, -90.0 - kRounding_degrees, 90.0 + kRounding_degrees,
+                 "latitude");
+  result.latitude_degrees = std::clamp(place.latitude_deg, -90.0, 90.0);
+  result.longitude_degrees = WrappedLongitude(place.longitude_deg);
   GeographicLib::Math::sincosd(result.latitude_degrees, result.sin_latitude, result.cos_latitude);
   GeographicLib::Math::sincosd(result.longitude_degrees, result.sin_longitude,
                                result.cos_longitude);
@@ -50,29 +50,30 @@ GeographicLib::Geocentric EarthOf(const Ellipsoid& ellipsoid) {
 
 }  // namespace
 
-double WrappedLongitude(double longitude_rad) {
-  if (!std::isfinite(longitude_rad)) {
-    throw InputError(fmt::format("longitude is {}; it must be finite", longitude_rad));
+double WrappedLongitude(double longitude_deg) {
+  if (!std::isfinite(longitude_deg)) {
+    throw InputError(fmt::format("longitude is {}; it must be finite", longitude_deg));
   }
-  if (longitude_rad > -kPi && longitude_rad <= kPi) return longitude_rad;
-  const double wrapped = std::remainder(longitude_rad, 2.0 * kPi);
-  return wrapped <= -kPi ? kPi : wrapped;
+  if (longitude_deg > -180.0 && longitude_deg <= 180.0) return longitude_deg;
+  const double wrapped = std::remainder(longitude_deg, 360.0);
+  return wrapped == -180.0 ? 180.0 : wrapped;
 }
 
-GeodeticPosition PlaceFromDegrees(double latitude, double longitude, double height_m) {
-  RequireInRange(latitude, -90.0, 90.0, "latitude");
-  RequireInRange(longitude, -180.0, 360.0, "longitude");
-  if (!(std::isfinite(height_m) && height_m >= -12000.0)) {
+Place WithWrappedLongitude(const Place& place) {
+  return {place.latitude_deg, WrappedLongitude(place.longitude_deg), place.height_m};
+}
+
+Place CheckedPlace(const Place& place) {
+  RequireInRange(place.latitude_deg, -90.0, 90.0, "latitude");
+  RequireInRange(place.longitude_deg, -180.0, 360.0, "longitude");
+  if (!(std::isfinite(place.height_m) && place.height_m >= -12000.0)) {
     throw InputError(
-        fmt::format("height_m is {}; it must be finite and at least -12000", height_m));
+        fmt::format("height_m is {}; it must be finite and at least -12000", place.height_m));
   }
-  // Longitudes are wrapped in degrees, where this is exact: 190 and -170 become the same number.
-  const double wrapped = longitude > 180.0 ? longitude - 360.0 : longitude;
-  return {latitude * kRadiansPerDegree, (wrapped == -180.0 ? 180.0 : wrapped) * kRadiansPerDegree,
-          height_m};
+  return WithWrappedLongitude(place);
 }
 
-Point<Ecef> EcefFromGeodetic(const Ellipsoid& ellipsoid, const GeodeticPosition& place) {
+Point<Ecef> EcefFromGeodetic(const Ellipsoid& ellipsoid, const Place& place) {
   const Orientation at = OrientationOf(place);
   if (!std::isfinite(place.height_m)) {
     throw InputError(fmt::format("height_m is {}; it must be finite", place.height_m));
@@ -83,13 +84,12 @@ Point<Ecef> EcefFromGeodetic(const Ellipsoid& ellipsoid, const GeodeticPosition&
   return point;
 }
 
-GeodeticPosition GeodeticFromEcef(const Ellipsoid& ellipsoid, const Point<Ecef>& point) {
+Place GeodeticFromEcef(const Ellipsoid& ellipsoid, const Point<Ecef>& point) {
   double latitude = 0.0;
   double longitude = 0.0;
   double height_m = 0.0;
   EarthOf(ellipsoid).Reverse(point.xyz.x, point.xyz.y, point.xyz.z, latitude, longitude, height_m);
-  return {latitude * kRadiansPerDegree,
-          (longitude == -180.0 ? 180.0 : longitude) * kRadiansPerDegree, height_m};
+  return {latitude, longitude == -180.0 ? 180.0 : longitude, height_m};
 }
 
 double OsculatingRadius(const Ellipsoid& ellipsoid, double latitude_rad) {
@@ -101,7 +101,7 @@ double OsculatingRadius(const Ellipsoid& ellipsoid, double latitude_rad) {
   return ellipsoid.equatorial_radius_m * (1.0 - f) / (1.0 - f * (2.0 - f) * sine * sine);
 }
 
-LocalFrame::LocalFrame(const Ellipsoid& ellipsoid, const GeodeticPosition& origin)
+LocalFrame::LocalFrame(const Ellipsoid& ellipsoid, const Place& origin)
     : ellipsoid_(ellipsoid), origin_(origin), origin_ecef_(EcefFromGeodetic(ellipsoid, origin)) {
   const Orientation at = OrientationOf(origin);
   east_ = {-at.sin_longitude, at.cos_longitude, 0.0};
@@ -126,11 +126,11 @@ Point<Ecef> LocalFrame::EcefFromEnu(const Point<Enu>& point) const {
   return origin_ecef_ + EcefFromEnu(Vector<Enu>{point.xyz});
 }
 
-Point<Enu> LocalFrame::EnuFromGeodetic(const GeodeticPosition& place) const {
+Point<Enu> LocalFrame::EnuFromGeodetic(const Place& place) const {
   return EnuFromEcef(EcefFromGeodetic(ellipsoid_, place));
 }
 
-GeodeticPosition LocalFrame::GeodeticFromEnu(const Point<Enu>& point) const {
+Place LocalFrame::GeodeticFromEnu(const Point<Enu>& point) const {
   return GeodeticFromEcef(ellipsoid_, EcefFromEnu(point));
 }
 

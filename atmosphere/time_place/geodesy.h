@@ -7,8 +7,12 @@
 // the earth.
 #pragma once
 
+#include <alpenglow/place_time.h>
+
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {
 
@@ -43,33 +47,31 @@ struct Ellipsoid {
 /// WGS84 (NIMA TR8350.2, 2000).
 inline constexpr Ellipsoid kWgs84{6378137.0, 1.0 / 298.257223563};
 
-/// A place in geodetic coordinates. Latitude in [-pi/2, pi/2], longitude any finite value, height
-/// above the ellipsoid.
-struct GeodeticPosition {
-  double latitude_rad = 0.0;
-  double longitude_rad = 0.0;
-  double height_m = 0.0;
+/// Returns the longitude [degrees] of the same meridian in (-180, 180]: -180 becomes 180, values
+/// inside are returned unchanged. Throws InputError if it is not finite.
+[[nodiscard]] double WrappedLongitude(double longitude_deg);
 
-  bool operator==(const GeodeticPosition&) const = default;
-};
+/// Returns the place with WrappedLongitude, so that 180 and -180 are one place, and so are 190 and
+/// -170.
+[[nodiscard]] Place WithWrappedLongitude(const Place& place);
 
-/// Returns the longitude of the same meridian in (-pi, pi]: -pi becomes pi, values inside are
-/// returned unchanged. Throws InputError if it is not finite.
-[[nodiscard]] double WrappedLongitude(double longitude_rad);
+/// Returns WithWrappedLongitude(place). Throws InputError naming the coordinate if the latitude is not in [-90, 90], the
+/// longitude not in [-180, 360], the height not finite or below -12 km.
+[[nodiscard]] Place CheckedPlace(const Place& place);
 
-/// Returns a place from degrees; throws InputError naming the key if latitude is not in [-90, 90],
-/// longitude not in [-180, 360], height not finite or below -12 km. The longitude is wrapped, so
-/// that 180 and -180 are one place, and so are 190 and -170.
-[[nodiscard]] GeodeticPosition PlaceFromDegrees(double latitude, double longitude, double height_m);
+/// Returns a place whose coordinates were computed in radians. They are neither checked nor
+/// wrapped.
+[[nodiscard]] constexpr Place PlaceFromRadians(double latitude_rad, double longitude_rad,
+                                               double height_m) {
+  return {latitude_rad / kRadiansPerDegree, longitude_rad / kRadiansPerDegree, height_m};
+}
 
-/// Throws InputError if the latitude is outside [-pi/2, pi/2], a coordinate is not finite, or the
-/// ellipsoid is invalid.
-[[nodiscard]] Point<Ecef> EcefFromGeodetic(const Ellipsoid& ellipsoid,
-                                           const GeodeticPosition& place);
+/// The longitude may have any finite value. Throws InputError if the latitude is outside [-90, 90],
+/// a coordinate is not finite, or the ellipsoid is invalid.
+[[nodiscard]] Point<Ecef> EcefFromGeodetic(const Ellipsoid& ellipsoid, const Place& place);
 /// Returns the geodetic coordinates of a point. At the centre of the earth, where the nearest point
 /// of the ellipsoid is not unique, it returns the north pole. NaN gives NaN.
-[[nodiscard]] GeodeticPosition GeodeticFromEcef(const Ellipsoid& ellipsoid,
-                                                const Point<Ecef>& point);
+[[nodiscard]] Place GeodeticFromEcef(const Ellipsoid& ellipsoid, const Point<Ecef>& point);
 
 /// Returns the radius of the sphere that osculates the ellipsoid at a latitude: the mean (Gaussian)
 /// radius sqrt(M N) of the meridian and prime-vertical curvatures [m].
@@ -78,21 +80,21 @@ struct GeodeticPosition {
 /// The east-north-up frame at a place.
 class LocalFrame {
  public:
-  LocalFrame(const Ellipsoid& ellipsoid, const GeodeticPosition& origin);
+  LocalFrame(const Ellipsoid& ellipsoid, const Place& origin);
 
   [[nodiscard]] Point<Enu> EnuFromEcef(const Point<Ecef>& point) const;
   [[nodiscard]] Point<Ecef> EcefFromEnu(const Point<Enu>& point) const;
   [[nodiscard]] Vector<Enu> EnuFromEcef(const Vector<Ecef>& vector) const;
   [[nodiscard]] Vector<Ecef> EcefFromEnu(const Vector<Enu>& vector) const;
-  [[nodiscard]] Point<Enu> EnuFromGeodetic(const GeodeticPosition& place) const;
-  [[nodiscard]] GeodeticPosition GeodeticFromEnu(const Point<Enu>& point) const;
+  [[nodiscard]] Point<Enu> EnuFromGeodetic(const Place& place) const;
+  [[nodiscard]] Place GeodeticFromEnu(const Point<Enu>& point) const;
 
-  [[nodiscard]] const GeodeticPosition& origin() const { return origin_; }
+  [[nodiscard]] const Place& origin() const { return origin_; }
   [[nodiscard]] const Ellipsoid& ellipsoid() const { return ellipsoid_; }
 
  private:
   Ellipsoid ellipsoid_;
-  GeodeticPosition origin_;
+  Place origin_;
   Point<Ecef> origin_ecef_;
   glm::dvec3 east_, north_, up_;  // unit vectors in ECEF
 };

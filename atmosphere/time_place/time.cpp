@@ -20,6 +20,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time_zone.h"
 
 namespace alpenglow::atmosphere {
@@ -259,8 +260,8 @@ UtcTime Now() {
           std::chrono::duration<double>(now - day).count()};
 }
 
-UtcTime MeanSolarMidnight(double longitude_rad, const UtcTime& around) {
-  const double ahead_s = longitude_rad / (2.0 * kPi) * kDay_s;  // ahead of Greenwich
+UtcTime MeanSolarMidnight(const Place& place, const UtcTime& around) {
+  const double ahead_s = WrappedLongitude(place.longitude_deg) / 360.0 * kDay_s;  // of Greenwich
   const double local_day = std::floor((around.second_of_day + ahead_s) / kDay_s);
   const int day = around.modified_julian_day + static_cast<int>(local_day);
   return AddSeconds(UtcTime{day, 0.0}, -ahead_s);

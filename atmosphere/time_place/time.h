@@ -17,8 +17,8 @@ inline constexpr int kFirstYear = 1900, kLastYear = 2100;
 /// Returns the time of this machine's clock, to a millisecond.
 [[nodiscard]] UtcTime Now();
 
-/// Returns the mean solar midnight at a longitude [rad], in (-pi, pi], at or before an instant.
-[[nodiscard]] UtcTime MeanSolarMidnight(double longitude_rad, const UtcTime& around);
+/// Returns the mean solar midnight at a place, at or before an instant.
+[[nodiscard]] UtcTime MeanSolarMidnight(const Place& place, const UtcTime& around);
 
 /// Reads ISO 8601: "2026-06-21T04:00:00Z", "2026-06-21T13:00:00+09:00"; a space for the T, t and z
 /// (RFC 3339), and fractions of a second after a point or a comma are allowed. Without Z or an

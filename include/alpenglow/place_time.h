@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <compare>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,16 @@ struct Place {
   double latitude_deg = 0.0;   ///< in [-90, 90], north is positive
   double longitude_deg = 0.0;  ///< in [-180, 360], east is positive
   double height_m = 0.0;       ///< above the ellipsoid, at least -12000
+
+  /// Returns the latitude [rad].
+  [[nodiscard]] constexpr double latitude_rad() const { return latitude_deg * kRadiansPerDegree; }
+  /// Returns the longitude [rad].
+  [[nodiscard]] constexpr double longitude_rad() const { return longitude_deg * kRadiansPerDegree; }
+
+  [[nodiscard]] bool operator==(const Place&) const = default;
+
+ private:
+  static constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 };
 
 /// An instant of UTC, as a day and the second in it. Its default is the beginning of 1970.

@@ -86,19 +86,19 @@ float Gain(float peak, float depth) {
 }
 
 /// Position of a value between the nodes of a table.
-struct Place {
+struct TablePosition {
   std::size_t cell;
   float share;
 };
 
-Place PlaceOfAngle(double nu) {
+TablePosition PlaceOfAngle(double nu) {
   const double s = std::sqrt(std::acos(std::clamp(nu, -1.0, 1.0)) / kPi);
   const double at = s * static_cast<double>(kAngles - 1);
   const auto cell = std::min(static_cast<std::size_t>(at), kAngles - 2);
   return {cell, static_cast<float>(at - static_cast<double>(cell))};
 }
 
-Place PlaceOfDepth(const PeakShape& shape, float y) {
+TablePosition PlaceOfDepth(const PeakShape& shape, float y) {
   const std::size_t last = shape.depth.size() - 1;
   const auto at = static_cast<std::size_t>(shape.depths_a_log * std::log1p(y));
   const std::size_t cell = std::min(at, last - 1);
@@ -351,11 +351,11 @@ bool GlowAboutTheSun::Reaches(double nu) {
 Bands<float> GlowAboutTheSun::FactorOf(double nu, float column_km) const {
   Bands<float> factor(scattering_per_km_.size());
   if (!Reaches(nu)) return factor;
-  const Place angle = PlaceOfAngle(nu);
+  const TablePosition angle = PlaceOfAngle(nu);
   for (std::size_t band = 0; band < factor.count; ++band) {
     const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
     const float y = std::min(scattering_per_km_[band] * column_km, shape.depth.back());
-    const Place place = PlaceOfDepth(shape, y);
+    const TablePosition place = PlaceOfDepth(shape, y);
     const auto at = [&](std::size_t depth) {
       const float* high = &shape.high[angle.cell * kGlowDepths + depth];
       return high[0] + angle.share * (high[kGlowDepths] - high[0]);
@@ -418,7 +418,7 @@ PeakAtAngle::PeakAtAngle(const PeakShape& shape, double nu, float share, float p
 // The value of the formulas at y = 0 is subtracted, times exp(-depth).
 float PeakAtAngle::LightOf(float y, float depth, float of_gas, float of_aerosol) const {
   const float more = Gain(share_ * y, depth);
-  const Place place = PlaceOfDepth(*shape_, y);
+  const TablePosition place = PlaceOfDepth(*shape_, y);
   const float above = high_[place.cell] + place.share * (high_[place.cell + 1] - high_[place.cell]);
   return more * (of_gas + of_aerosol * back_) +
          std::exp(shape_->rate * y - depth) * of_aerosol * above;

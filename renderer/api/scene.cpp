@@ -34,7 +34,7 @@ renderer::TerrainSource TerrainOf(const SceneDescription& description) {
   renderer::TerrainSource terrain;
   switch (description.terrain) {
     case TerrainKind::kBuiltInMountains:
-      terrain = renderer::RangeSeenFrom(GeodeticFromPlace(description.place));
+      terrain = renderer::RangeSeenFrom(atmosphere::CheckedPlace(description.place));
       break;
     case TerrainKind::kElevationModel:
       terrain.kind = renderer::TerrainSource::Kind::kElevationModel;
@@ -52,7 +52,7 @@ renderer::TerrainSource TerrainOf(const SceneDescription& description) {
 
 renderer::Scene SceneFrom(const SceneDescription& description) {
   renderer::Scene scene;
-  scene.place = GeodeticFromPlace(description.place);
+  scene.place = atmosphere::CheckedPlace(description.place);
   scene.place.height_m = 0.0;
   const Camera& camera = description.camera;
   scene.camera = renderer::CameraFromDegrees({camera.height_m, camera.height_is_above_ground},
@@ -68,10 +68,9 @@ renderer::Scene SceneFrom(const SceneDescription& description) {
 
 SceneDescription BuiltInScene() {
   const renderer::BuiltInView view = renderer::ProceduralMountainsViewAboveGround(
-      atmosphere::PlaceFromDegrees(renderer::kHomeLatitude, renderer::kHomeLongitude, 0.0));
+      {renderer::kHomeLatitude, renderer::kHomeLongitude, 0.0});
   SceneDescription scene;
-  scene.place = {view.eye.latitude_rad / kRadiansPerDegree,
-                 view.eye.longitude_rad / kRadiansPerDegree};
+  scene.place = {view.eye.latitude_deg, view.eye.longitude_deg};
   scene.camera = {.height_m = view.eye.height_m,
                   .heading_deg = view.heading_deg,
                   .pitch_deg = view.pitch_deg,

@@ -34,24 +34,25 @@ constexpr std::size_t kNeeded = kHeading;
 
 double Degrees(double radians) { return radians / kRadiansPerDegree; }
 
-glm::dvec3 NormalAt(const GeodeticPosition& place) {
-  const double c = std::cos(place.latitude_rad);
-  return {c * std::cos(place.longitude_rad), c * std::sin(place.longitude_rad),
-          std::sin(place.latitude_rad)};
+glm::dvec3 NormalAt(const Place& place) {
+  const double c = std::cos(place.latitude_rad());
+  return {c * std::cos(place.longitude_rad()), c * std::sin(place.longitude_rad()),
+          std::sin(place.latitude_rad())};
 }
 
-GeodeticPosition PlaceOfNormal(const glm::dvec3& normal, double height_m) {
-  return {std::atan2(normal.z, std::hypot(normal.x, normal.y)), std::atan2(normal.y, normal.x),
-          height_m};
+Place PlaceOfNormal(const glm::dvec3& normal, double height_m) {
+  return PlaceFromRadians(std::atan2(normal.z, std::hypot(normal.x, normal.y)),
+                          std::atan2(normal.y, normal.x), height_m);
 }
 
 /// Returns the change of the heading of a direction that is carried along the great circle from one
 /// place to another [rad]: the excess of the triangle with the pole (Napier's analogies). Over a
 /// pole it is half a turn.
-double TurnOfHeading(const GeodeticPosition& from, const GeodeticPosition& to) {
-  const double half_east = 0.5 * std::remainder(to.longitude_rad - from.longitude_rad, 2.0 * kPi);
-  const double mean = 0.5 * (from.latitude_rad + to.latitude_rad);
-  const double half_north = 0.5 * (to.latitude_rad - from.latitude_rad);
+double TurnOfHeading(const Place& from, const Place& to) {
+  const double half_east =
+      0.5 * std::remainder(to.longitude_rad() - from.longitude_rad(), 2.0 * kPi);
+  const double mean = 0.5 * (from.latitude_rad() + to.latitude_rad());
+  const double half_north = 0.5 * (to.latitude_rad() - from.latitude_rad());
   return 2.0 * std::atan2(std::sin(mean) * std::sin(half_east),
                           std::cos(half_north) * std::cos(half_east));
 }
@@ -154,7 +155,7 @@ void RequireWays(const std::vector<glm::dvec3>& normals) {
 
 CameraPath::CameraPath(std::vector<CameraPathPoint> points) : points_(std::move(points)) {
   RequireOrder(points_);
-  GeodeticPosition last_place;
+  Place last_place;
   double turned_rad = 0.0;  // of a direction that is carried along from the first point
   for (const CameraPathPoint& point : points_) {
     const CameraPose& pose = point.pose;
@@ -248,9 +249,9 @@ CameraPath ReadCameraPath(const std::filesystem::path& file, const CameraPose& o
                             degrees(kPitch, -90.0, 90.0, otherwise.pitch_rad),
                             degrees(kRoll, -180.0, 180.0, otherwise.roll_rad),
                             degrees(kFov, 0.0, 360.0, otherwise.fov_rad));
-      point.pose = {PlaceFromDegrees(lines.Number(kLatitude, -90.0, 90.0),
-                                     lines.Number(kLongitude, -180.0, 360.0),
-                                     lines.Number(kHeight, -12000.0, 1e9)),
+      point.pose = {CheckedPlace({lines.Number(kLatitude, -90.0, 90.0),
+                                  lines.Number(kLongitude, -180.0, 360.0),
+                                  lines.Number(kHeight, -12000.0, 1e9)}),
                     camera.heading_rad, camera.pitch_rad, camera.roll_rad, camera.fov_rad};
       if (lines.Has(kUtc)) point.utc = ParseInstant(lines.Field(kUtc));
     } catch (const InputError& error) {
@@ -271,9 +272,9 @@ std::string LineOf(const CameraPathPoint& point) {
   const CameraPose& pose = point.pose;
   const std::string line =
       fmt::format("{},{:.10f},{:.10f},{:.4f},{:.10f},{:.10f},{:.10f},{:.10f}", point.time_s,
-                  Degrees(pose.place.latitude_rad), Degrees(pose.place.longitude_rad),
-                  pose.place.height_m, Degrees(pose.heading_rad), Degrees(pose.pitch_rad),
-                  Degrees(pose.roll_rad), Degrees(pose.fov_rad));
+                  pose.place.latitude_deg, pose.place.longitude_deg, pose.place.height_m,
+                  Degrees(pose.heading_rad), Degrees(pose.pitch_rad), Degrees(pose.roll_rad),
+                  Degrees(pose.fov_rad));
   return point.utc ? fmt::format("{},{}\n", line, FormatUtc(*point.utc, 6)) : line + "\n";
 }
 
@@ -284,7 +285,7 @@ std::string TextOf(const CameraPath& path) {
 }
 
 void CheckPoints(const CameraPath& path, const std::string& file,
-                 const std::function<void(const GeodeticPosition&)>& check) {
+                 const std::function<void(const Place&)>& check) {
   for (std::size_t i = 0; i < path.points().size(); ++i) {
     try {
       check(path.points()[i].pose.place);

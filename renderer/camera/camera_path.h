@@ -50,16 +50,16 @@ namespace alpenglow::renderer {
 inline constexpr double kSamePlace_m = 0.5;
 
 /// Returns the length of the chord between two places [m].
-[[nodiscard]] inline double DistanceBetween(const GeodeticPosition& a, const GeodeticPosition& b) {
+[[nodiscard]] inline double DistanceBetween(const Place& a, const Place& b) {
   return glm::length((EcefFromGeodetic(kWgs84, a) - EcefFromGeodetic(kWgs84, b)).xyz);
 }
 
 /// Function that returns the height of the ground above the ellipsoid [m] at a place.
-using GroundHeight = std::function<double(const GeodeticPosition&)>;
+using GroundHeight = std::function<double(const Place&)>;
 
 /// Position and orientation of a camera. Angles are defined as in Camera.
 struct CameraPose {
-  GeodeticPosition place;  // above the ellipsoid
+  Place place;  // above the ellipsoid
   double heading_rad = 0.0;
   double pitch_rad = 0.0;
   double roll_rad = 0.0;
@@ -118,7 +118,7 @@ class CameraPath {
 /// Calls a check with the place of every point of a path. Adds the file and the number of the point,
 /// counted from 1, to its InputError.
 void CheckPoints(const CameraPath& path, const std::string& file,
-                 const std::function<void(const GeodeticPosition&)>& check);
+                 const std::function<void(const Place&)>& check);
 
 /// Reads a path; `otherwise` supplies the values of columns that are left out. Throws InputError
 /// "file:line: ..." for unknown or missing columns, for values out of range, and for points that

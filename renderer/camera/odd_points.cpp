@@ -72,10 +72,9 @@ double MedianOf(std::vector<double> values) {
   return *middle;
 }
 
-std::vector<glm::dvec3> PositionsOf(const std::vector<GeodeticPosition>& places) {
+std::vector<glm::dvec3> PositionsOf(const std::vector<Place>& places) {
   std::vector<glm::dvec3> positions_m;
-  for (const GeodeticPosition& place : places)
-    positions_m.push_back(EcefFromGeodetic(kWgs84, place).xyz);
+  for (const Place& place : places) positions_m.push_back(EcefFromGeodetic(kWgs84, place).xyz);
   return positions_m;
 }
 
@@ -118,13 +117,13 @@ std::vector<double> TimesAlong(const std::vector<glm::dvec3>& positions_m,
 
 /// Returns which points lie at latitude 0 and longitude 0, far from their nearest neighbours that
 /// do not.
-std::vector<bool> OnNullIsland(const std::vector<GeodeticPosition>& places,
+std::vector<bool> OnNullIsland(const std::vector<Place>& places,
                                const std::vector<glm::dvec3>& positions_m) {
   constexpr double kAt_rad = 1e-5 * kRadiansPerDegree;
   constexpr double kFar_m = 100e3;
   const auto is_null = [&](std::size_t i) {
-    return std::abs(places[i].latitude_rad) < kAt_rad &&
-           std::abs(places[i].longitude_rad) < kAt_rad;
+    return std::abs(places[i].latitude_rad()) < kAt_rad &&
+           std::abs(places[i].longitude_rad()) < kAt_rad;
   };
   std::vector<bool> odd(places.size());
   for (std::size_t i = 0; i < places.size();) {

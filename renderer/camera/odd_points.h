@@ -19,7 +19,7 @@ namespace alpenglow::renderer {
 
 /// The points of a track that have a place, in order, for the functions below.
 struct PlacesInTime {
-  std::vector<GeodeticPosition> places;  // with height 0
+  std::vector<Place> places;  // with height 0
   /// Increasing where they are known. With fewer than two, the track was drawn.
   std::vector<std::optional<double>> times_s;
 };

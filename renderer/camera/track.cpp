@@ -94,8 +94,7 @@ void LiftOverGround(const Track& track, const TrackStyle& style, const GroundHei
 }
 
 /// Returns the vector between two places, in the frame at their middle.
-glm::dvec3 Chord(const GeodeticPosition& from, const GeodeticPosition& to,
-                 const GeodeticPosition& middle) {
+glm::dvec3 Chord(const Place& from, const Place& to, const Place& middle) {
   const LocalFrame frame(kWgs84, middle);
   return frame.EnuFromGeodetic(to).xyz - frame.EnuFromGeodetic(from).xyz;
 }
@@ -108,9 +107,8 @@ void LookAlong(const CameraPath& places, std::vector<CameraPathPoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double t = points[i].time_s;
     CameraPose& pose = points[i].pose;
-    const GeodeticPosition from =
-        places.PoseAt(std::max(t - 0.5 * kChord_s, places.begin_s())).place;
-    const GeodeticPosition to = places.PoseAt(std::min(t + 0.5 * kChord_s, places.end_s())).place;
+    const Place from = places.PoseAt(std::max(t - 0.5 * kChord_s, places.begin_s())).place;
+    const Place to = places.PoseAt(std::min(t + 0.5 * kChord_s, places.end_s())).place;
     const glm::dvec3 chord = Chord(from, to, pose.place);
     const double level_m = std::hypot(chord.x, chord.y);
     if (level_m > kStands_m) {

@@ -26,7 +26,7 @@
 namespace alpenglow::renderer {
 
 struct TrackPoint {
-  GeodeticPosition place;  // its height is 0 if unknown
+  Place place;  // its height is 0 if unknown
   std::optional<UtcTime> utc = {};
   int segment = 0;  // the path between points of different segments is unknown
 };

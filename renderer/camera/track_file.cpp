@@ -202,8 +202,9 @@ class TrackReader {
                 const XMLElement& at, RecordedPoint& point) {
     if (!latitude || !longitude) return;
     point.is_pause = IsPauseMark(*latitude);
-    point.place =
-        Tried(at, [&] { return std::optional(PlaceFromDegrees(*latitude, *longitude, 0.0)); });
+    point.place = Tried(at, [&] {
+      return std::optional(CheckedPlace({*latitude, *longitude, 0.0}));
+    });
   }
 
   /// OpenTracks marks the begin of a pause with latitude 100 and its end with latitude 200.

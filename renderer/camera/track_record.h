@@ -20,7 +20,7 @@ namespace alpenglow::renderer {
 
 /// A point as recorded. Values that are missing, cannot be read, or are impossible are empty.
 struct RecordedPoint {
-  std::optional<GeodeticPosition> place;  // height 0; empty: the fix was lost
+  std::optional<Place> place;  // height 0; empty: the fix was lost
   std::optional<double> height_m;
   std::optional<UtcTime> utc;
   /// The recorder marks a pause here with an impossible place; the next point begins a segment.

@@ -61,7 +61,7 @@ class MeshBuilder {
 
   [[nodiscard]] glm::dvec3 PositionOf(double latitude_rad, double longitude_rad,
                                       double height_m) const {
-    return frame_.EnuFromGeodetic({latitude_rad, longitude_rad, height_m}).xyz;
+    return frame_.EnuFromGeodetic(PlaceFromRadians(latitude_rad, longitude_rad, height_m)).xyz;
   }
 
   void AddVertices() {

@@ -17,13 +17,13 @@ glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const SkyBodies& bodies
   return DirectionFromAngles(bodies.moon.elevation_rad + lift_rad, bodies.moon.azimuth_rad).xyz;
 }
 
-Lighting LightingOf(const SunPosition& sun, const UtcTime& instant, const GeodeticPosition& place,
+Lighting LightingOf(const SunPosition& sun, const UtcTime& instant, const Place& place,
                     const Medium& medium, double wetness) {
   return LightingOf(SunlightOf(sun, medium), instant, place, medium, wetness);
 }
 
-Lighting LightingOf(const DistantLight& light, const UtcTime& instant,
-                    const GeodeticPosition& place, const Medium& medium, double wetness) {
+Lighting LightingOf(const DistantLight& light, const UtcTime& instant, const Place& place,
+                    const Medium& medium, double wetness) {
   const MountainCover cover = CoverInSeason(place, instant.modified_julian_day);
   return {light, MountainSurface(medium.wavelengths_nm, cover, wetness), SeaTime(instant)};
 }

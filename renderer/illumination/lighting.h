@@ -77,12 +77,10 @@ struct Lighting {
 /// Returns the lighting for the sun's position, with the seasonal cover of the ground at a place.
 /// @param wetness  see MountainSurface.
 [[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcTime& instant,
-                                  const GeodeticPosition& place, const Medium& medium,
-                                  double wetness = 0.0);
+                                  const Place& place, const Medium& medium, double wetness = 0.0);
 /// Returns the lighting by any distant light.
 [[nodiscard]] Lighting LightingOf(const DistantLight& light, const UtcTime& instant,
-                                  const GeodeticPosition& place, const Medium& medium,
-                                  double wetness = 0.0);
+                                  const Place& place, const Medium& medium, double wetness = 0.0);
 
 /// Returns the moon's reflectance at the phase of the disk, relative to that at 550 nm.
 [[nodiscard]] BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm);

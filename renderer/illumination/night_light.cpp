@@ -123,7 +123,7 @@ double FaintestStar(double lux, double pixel_angle_rad) {
   return MagnitudeOf(kUnseenStar * pixel_angle_rad * pixel_angle_rad / kPi * lux);
 }
 
-std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcTime& instant,
+std::vector<StarLight> StarLightsOver(const Place& eye, const UtcTime& instant,
                                       const RefractedView& view, const BandColour& colour,
                                       double faintest, const OpenShutter& shutter) {
   const LocalFrame local(kWgs84, eye);

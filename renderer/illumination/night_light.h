@@ -85,8 +85,7 @@ inline constexpr double kDaylight_lux = 5000.0;
 /// Returns planets, then stars, brightest first, at least as bright as `faintest`. Directions are
 /// east, north, up at the eye, refracted (without dispersion). While the shutter is open, planets
 /// move with the stars (they are off by 0.2 arcseconds a minute).
-[[nodiscard]] std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye,
-                                                    const UtcTime& instant,
+[[nodiscard]] std::vector<StarLight> StarLightsOver(const Place& eye, const UtcTime& instant,
                                                     const RefractedView& view,
                                                     const BandColour& colour, double faintest,
                                                     const OpenShutter& shutter = {});

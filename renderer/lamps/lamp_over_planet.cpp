@@ -137,11 +137,11 @@ class RayOverPlanet {
       sum[k] += ExponentialColumn(length_m, a.value[k], b.value[k], a.log[k] - b.log[k]);
   }
 
-  struct Place {
+  struct PointInLayers {
     glm::dvec3 point;
     LayerDensities densities;
   };
-  void AddColumns(const Place& from, const Place& to, LayerColumns& sum) const {
+  void AddColumns(const PointInLayers& from, const PointInLayers& to, LayerColumns& sum) const {
     constexpr double kPiece_m = 25e3;
     constexpr int kMostPieces = 16;
     const glm::dvec3 way = to.point - from.point;

@@ -185,7 +185,7 @@ double MeanOverDirections(const LampProfile& profile) {
 }
 
 glm::dvec3 PositionOf(const LampStage& stage, const Light& light, std::size_t number) {
-  GeodeticPosition place{light.latitude_rad, light.longitude_rad, 0.0};
+  Place place = light.place;
   if (!light.height.above_ground) place.height_m = light.height.value_m;
   glm::dvec3 position = stage.ground().frame.EnuFromGeodetic(place).xyz;
   const std::optional<Terrain>& terrain = stage.ground().terrain;

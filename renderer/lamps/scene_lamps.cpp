@@ -117,8 +117,7 @@ void PutColours(const BandColour& colour, LampsBlock& block) {
 
 }  // namespace
 
-LampView LampViewFrom(const LocalFrame& ground, const GeodeticPosition& eye,
-                      double pixel_angle_rad) {
+LampView LampViewFrom(const LocalFrame& ground, const Place& eye, double pixel_angle_rad) {
   const FrameTransform from_eye(ground, LocalFrame(ground.ellipsoid(), eye));
   return {from_eye.origin_m(), glm::transpose(from_eye.axes()), eye.height_m, pixel_angle_rad};
 }

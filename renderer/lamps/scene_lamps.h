@@ -66,7 +66,7 @@ struct LampView {
 };
 
 /// Returns the view of an eye at any place; `ground` is the frame of SceneGround.
-[[nodiscard]] LampView LampViewFrom(const LocalFrame& ground, const GeodeticPosition& eye,
+[[nodiscard]] LampView LampViewFrom(const LocalFrame& ground, const Place& eye,
                                     double pixel_angle_rad);
 
 /// Layers of a lamp's plan in the texture of plans; levels 0: no plan.

@@ -157,13 +157,13 @@ constexpr double kGrassGrows = 85.0, kGrassEnds = 330.0;
 
 }  // namespace
 
-MountainClimate MountainClimateAt(const GeodeticPosition& place) {
+MountainClimate MountainClimateAt(const Place& place) {
   constexpr double kReach = 0.06;   // 380 km
   constexpr double kOfZone = 0.02;  // weight of the zonal mean; a massif on the spot has weight 1
-  const MountainClimate zone = OfLatitude(place.latitude_rad / kRadiansPerDegree);
+  const MountainClimate zone = OfLatitude(place.latitude_deg);
   double weights = kOfZone;
   MountainClimate sum{0.0, 0.0, 0.0};
-  const glm::dvec3 here = OnUnitSphere(place.latitude_rad, place.longitude_rad);
+  const glm::dvec3 here = OnUnitSphere(place.latitude_rad(), place.longitude_rad());
   for (const Massif& massif : kMassifs) {
     const glm::dvec3 middle =
         OnUnitSphere(massif.latitude * kRadiansPerDegree, massif.longitude * kRadiansPerDegree);
@@ -199,9 +199,9 @@ double GreenLine(double latitude_rad, int modified_julian_day, double from_day, 
   return of_latitude + kMetresPerDay * days;
 }
 
-MountainCover CoverInSeason(const GeodeticPosition& place, int modified_julian_day) {
+MountainCover CoverInSeason(const Place& place, int modified_julian_day) {
   const MountainClimate climate = MountainClimateAt(place);
-  const double latitude_rad = place.latitude_rad;
+  const double latitude_rad = place.latitude_rad();
   const double winter = WinterShare(latitude_rad, modified_julian_day);
   constexpr double kUnderTreeLine_m = 800.0, kTropic_rad = 23.4 * kRadiansPerDegree;
   return {climate.tree_line_m,

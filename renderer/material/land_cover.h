@@ -83,7 +83,7 @@ struct MountainClimate {
 
 /// Returns the climate of a place. It is accurate to 60 m in an observed massif and to about 400 m
 /// elsewhere; slopes facing the sun or the wind differ from others by similar amounts.
-[[nodiscard]] MountainClimate MountainClimateAt(const GeodeticPosition& place);
+[[nodiscard]] MountainClimate MountainClimateAt(const Place& place);
 
 /// Returns the fraction w of the way from the ice line down to the winter line: that of the Alps,
 /// shifted by half a year south of the equator.
@@ -95,6 +95,6 @@ struct MountainClimate {
 [[nodiscard]] double GreenLine(double latitude_rad, int modified_julian_day, double from_day,
                                double until_day);
 
-[[nodiscard]] MountainCover CoverInSeason(const GeodeticPosition& place, int modified_julian_day);
+[[nodiscard]] MountainCover CoverInSeason(const Place& place, int modified_julian_day);
 
 }  // namespace alpenglow::renderer

@@ -70,16 +70,16 @@ class LayerLight {
   struct Glow {
     std::vector<BandLight> mean, slope;  // at depth (i / last)^4 of the layer's [1/sr]
   };
-  struct Place {
+  struct NodePosition {
     std::size_t low;
     float share;
   };
   [[nodiscard]] double DepthAbove(double altitude_m) const;
-  [[nodiscard]] Place PlaceOf(double altitude_m) const;
-  [[nodiscard]] static BandLight At(const std::vector<BandLight>& nodes, const Place& place);
+  [[nodiscard]] NodePosition PlaceOf(double altitude_m) const;
+  [[nodiscard]] static BandLight At(const std::vector<BandLight>& nodes, const NodePosition& place);
   /// Returns the diffuse light scattered at a place, at least 0.
   /// @param tilt  the mean cosine of the phase function times Look::down.
-  [[nodiscard]] static BandLight Field(const Glow& glow, const Place& place, float tilt);
+  [[nodiscard]] static BandLight Field(const Glow& glow, const NodePosition& place, float tilt);
   void Solve(double albedo, double mu0, const BandLight& sun, const BandLight& sky,
              const std::vector<double>& ground_albedo);
 

@@ -178,7 +178,7 @@ MediumOptics OpticsOf(const Volume& volume, const std::vector<double>& wavelengt
 }
 
 VolumePlacement PlacementOf(const Volume& volume, const SceneGround& ground) {
-  GeodeticPosition place{volume.latitude_rad, volume.longitude_rad, 0.0};
+  Place place = volume.place;
   if (!volume.height.above_ground) place.height_m = volume.height.value_m;
   VolumePlacement placement;
   placement.bottom = ground.frame.EnuFromGeodetic(place).xyz;

@@ -125,9 +125,8 @@ bool AreAlikeWide(const GroundExtent& extent, double a_m, double b_m) {
          extent.HalfWidthUnder(kLower * a_m) == extent.HalfWidthUnder(kLower * b_m);
 }
 
-double DistanceOn(const Ellipsoid& ellipsoid, const GeodeticPosition& a,
-                  const GeodeticPosition& b) {
-  GeodeticPosition foot_a = a, foot_b = b;
+double DistanceOn(const Ellipsoid& ellipsoid, const Place& a, const Place& b) {
+  Place foot_a = a, foot_b = b;
   foot_a.height_m = foot_b.height_m = 0.0;
   return DistanceBetween(LocalFrame(ellipsoid, foot_a), LocalFrame(ellipsoid, foot_b));
 }
@@ -259,7 +258,7 @@ class GroundFollower::Maker {
       return GlossMirror::Of(over_land->lighting().on_terrain->sky(), multiple_scattering, surfaces,
                              over_land->lighting().source.direction.for_air, lowest_m, highest_m);
     }
-    const SolvedAir here = request.air->OnSphereAt(request.view.eye.latitude_rad);
+    const SolvedAir here = request.air->OnSphereAt(request.view.eye.latitude_rad());
     const glm::dvec3& to_light = light.direction.for_air;
     const OccludedSkyIrradiance sky(here.single_scattering(), multiple_scattering, to_light,
                                     OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5});
@@ -278,9 +277,9 @@ class GroundFollower::Maker {
     const std::optional<ElevationGrid> grid =
         (*request.ground)(request.view.eye, half_width_m_, extent_.samples);
     if (!grid) return nullptr;
-    GeodeticPosition foot = request.view.eye;
+    Place foot = request.view.eye;
     foot.height_m = 0.0;
-    SolvedAir air = request.air->OnSphereAt(foot.latitude_rad);
+    SolvedAir air = request.air->OnSphereAt(foot.latitude_rad());
     SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(air.medium()), foot));
     if (ground.terrain->mesh().triangles.empty()) return nullptr;  // no land is loaded there yet
     auto drape = drape_ ? drape_->In(ground.frame) : nullptr;
@@ -292,7 +291,7 @@ class GroundFollower::Maker {
     return site_;
   }
 
-  [[nodiscard]] bool IsNearMiddle(const GeodeticPosition& eye) const {
+  [[nodiscard]] bool IsNearMiddle(const Place& eye) const {
     return DistanceOn(site_->ground().frame.ellipsoid(), middle_, eye) <
            kNearMiddle * half_width_m_;
   }
@@ -309,7 +308,7 @@ class GroundFollower::Maker {
   std::shared_ptr<const GroundSite> site_;
   std::shared_ptr<const SolvedAir> air_;
   std::shared_ptr<const GroundSampler> ground_;
-  GeodeticPosition middle_;
+  Place middle_;
 };
 
 GroundFollower::GroundFollower(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,

@@ -221,7 +221,7 @@ class GroundFollower {
   void SetGround(GroundSampler sampler);
 
   struct View {
-    GeodeticPosition eye;
+    Place eye;
     UtcTime now;
     DistantLight by;  // that casts the shadows; in the frame east, north, up of the eye
     std::optional<DistantLight> other = std::nullopt;  // if it is significant

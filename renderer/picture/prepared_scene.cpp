@@ -74,10 +74,10 @@ std::string MessageOf(const SceneGround& ground, const GroundMaterial& material)
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<const SceneGround> ground,
-                             const PreparedScene* other, const GeodeticPosition& pattern_eye)
+                             const PreparedScene* other, const Place& pattern_eye)
     : scene_(scene),
       ground_(std::move(ground)),
-      medium_(OnOsculatingSphere(scene_.medium, scene_.place.latitude_rad)),
+      medium_(OnOsculatingSphere(scene_.medium, scene_.place.latitude_rad())),
       colour_(medium_.wavelengths_nm),
       lamps_(scene_, *ground_, medium_, colour_),
       media_(scene_, *ground_, medium_),
@@ -100,8 +100,8 @@ std::unique_ptr<PreparedScene> PreparedScene::OnOtherBands(int bands) const {
   return std::unique_ptr<PreparedScene>(new PreparedScene(same, ground_, this, pattern_origin_));
 }
 
-const PreparedScene& PreparedScene::WithPatternAt(const GeodeticPosition& eye) const {
-  const GeodeticPosition origin = PatternOrigin(eye);
+const PreparedScene& PreparedScene::WithPatternAt(const Place& eye) const {
+  const Place origin = PatternOrigin(eye);
   if (origin == pattern_origin_) return *this;
   const std::lock_guard lock(patterns_mutex_);
   for (const auto& other : other_patterns_) {
@@ -141,13 +141,12 @@ glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand
 
 Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sample) {
   const SceneGround& ground = scene.ground();
-  const GeodeticPosition& place = scene.scene().place;
+  const Place& place = scene.scene().place;
   const auto pose = camera_sample.middle();
   const CameraStand stand = pose ? StandAt(ground, pose->place) : StandOfScene(ground);
   if (camera_sample.bodies) return {stand, *camera_sample.bodies};
-  const GeodeticPosition eye =
-      pose ? pose->place
-           : GeodeticPosition{place.latitude_rad, place.longitude_rad, ground.eye_height_m};
+  const Place eye =
+      pose ? pose->place : Place{place.latitude_deg, place.longitude_deg, ground.eye_height_m};
   return {stand, SkyBodiesAt(eye, camera_sample.instant)};
 }
 
@@ -219,7 +218,7 @@ Lighting LightingAt(const PreparedScene& scene, const Observer& observer) {
   light.moon->direction = frame_from_enu * light.moon->direction;
   light.moon->to_sun = frame_from_enu * light.moon->to_sun;
   light.moon_turn =
-      MoonTurn(scene.scene().camera.shutter_s, bodies.place.latitude_rad, observer.stand);
+      MoonTurn(scene.scene().camera.shutter_s, bodies.place.latitude_rad(), observer.stand);
   AddNight(scene, observer, light);
   return light;
 }

@@ -137,14 +137,14 @@ class PreparedScene {
   }
   /// Returns the scene with the pattern of the ground that belongs to an eye (GroundPattern): itself,
   /// or a scene on the same ground, which is prepared on first use and kept.
-  [[nodiscard]] const PreparedScene& WithPatternAt(const GeodeticPosition& eye) const;
+  [[nodiscard]] const PreparedScene& WithPatternAt(const Place& eye) const;
 
  private:
   /// @param other  a scene on the same ground, to share its horizons and its light in the air; may
   ///     be null.
   /// @param pattern_eye  the eye to which the pattern of the ground belongs.
   PreparedScene(const Scene& scene, std::shared_ptr<const SceneGround> ground,
-                const PreparedScene* other, const GeodeticPosition& pattern_eye);
+                const PreparedScene* other, const Place& pattern_eye);
 
   Scene scene_;
   std::shared_ptr<const SceneGround> ground_;
@@ -161,7 +161,7 @@ class PreparedScene {
   std::optional<BandLight> towns_;
   mutable std::once_flag few_bands_asked_;
   mutable std::unique_ptr<PreparedScene> few_bands_;
-  GeodeticPosition pattern_origin_;
+  Place pattern_origin_;
   mutable std::mutex patterns_mutex_;
   mutable std::vector<std::unique_ptr<PreparedScene>> other_patterns_;
 };

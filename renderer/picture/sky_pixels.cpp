@@ -171,7 +171,7 @@ StarPixels::StarPixels(const CameraRays& camera, int width, int height,
   }
 }
 
-bool StarPixels::IsNear(const Place& place) const {
+bool StarPixels::IsNear(const PicturePoint& place) const {
   return place.x > -kStarReach && place.x < width_ + kStarReach && place.y > -kStarReach &&
          place.y < height_ + kStarReach;
 }
@@ -179,7 +179,7 @@ bool StarPixels::IsNear(const Place& place) const {
 void StarPixels::AddPoint(const CameraRays& camera, const StarLight& light, const Left& left) {
   const auto at = camera.PlaceOf(light.direction);
   if (!at) return;
-  const Place place{(*at)[0], (*at)[1]};
+  const PicturePoint place{(*at)[0], (*at)[1]};
   if (!IsNear(place)) return;
   const std::optional<BandLight> through = left(place.x, place.y);
   if (!through) return;
@@ -205,18 +205,18 @@ void StarPixels::AddTrail(const CameraRays& camera, const StarLight& light, cons
 
 // Transmittance changes little from end to end of a step. If ground hides one end, it is evaluated
 // at every point.
-void StarPixels::AddStep(const CameraRays& camera, const Place& from, const Place& to,
+void StarPixels::AddStep(const CameraRays& camera, const PicturePoint& from, const PicturePoint& to,
                          const BandLight& irradiance, const Left& left, const Hidden& hidden) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   const int count = std::max(static_cast<int>(std::ceil(2.0 * length)), 1);
   const auto place = [&](int i) {
     const double share = (i + 0.5) / count;
-    return Place{std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share)};
+    return PicturePoint{std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share)};
   };
   std::optional<BandLight> first, last;
   bool is_asked = false;
   for (int i = 0; i < count; ++i) {
-    const Place at = place(i);
+    const PicturePoint at = place(i);
     if (!IsNear(at)) continue;
     if (!is_asked) {
       first = left(from.x, from.y);
@@ -234,7 +234,8 @@ void StarPixels::AddStep(const CameraRays& camera, const Place& from, const Plac
   }
 }
 
-void StarPixels::Spread(const CameraRays& camera, const Place& place, const BandLight& irradiance) {
+void StarPixels::Spread(const CameraRays& camera, const PicturePoint& place,
+                        const BandLight& irradiance) {
   const auto [x, y] = place;
   const StarBell across = StarBellAround(x), down = StarBellAround(y);
   for (int j = 0; j < 2 * kStarReach + 1; ++j) {

@@ -126,17 +126,17 @@ class StarPixels {
   [[nodiscard]] const std::vector<glm::dvec3>& directions() const { return directions_; }
 
  private:
-  struct Place {
+  struct PicturePoint {
     double x, y;
   };
   /// Returns whether a place is near enough to light a pixel of the picture.
-  [[nodiscard]] bool IsNear(const Place& place) const;
+  [[nodiscard]] bool IsNear(const PicturePoint& place) const;
   void AddPoint(const CameraRays& camera, const StarLight& light, const Left& left);
   void AddTrail(const CameraRays& camera, const StarLight& light, const Left& left,
                 const Hidden& hidden);
-  void AddStep(const CameraRays& camera, const Place& from, const Place& to,
+  void AddStep(const CameraRays& camera, const PicturePoint& from, const PicturePoint& to,
                const BandLight& irradiance, const Left& left, const Hidden& hidden);
-  void Spread(const CameraRays& camera, const Place& place, const BandLight& irradiance);
+  void Spread(const CameraRays& camera, const PicturePoint& place, const BandLight& irradiance);
 
   int width_, height_;
   SpreadLight spread_;

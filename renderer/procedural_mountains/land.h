@@ -42,11 +42,11 @@ struct Land {
   }
 
   /// Position east and north of the middle [km].
-  struct Place {
+  struct MapPoint {
     double x_km;
     double y_km;
   };
-  [[nodiscard]] Place PlaceOf(int row, int column) const {
+  [[nodiscard]] MapPoint PlaceOf(int row, int column) const {
     return {1e-3 * spacing_m * (column - 0.5 * (size - 1)),
             1e-3 * spacing_m * (0.5 * (size - 1) - row)};
   }

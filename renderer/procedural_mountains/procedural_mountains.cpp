@@ -204,9 +204,7 @@ std::shared_ptr<const Land> LandOf(std::uint32_t seed) {
 // the pole instead.
 constexpr double kPolarLatitude_rad = 89.3 * kRadiansPerDegree;
 
-bool IsPolar(const GeodeticPosition& centre) {
-  return std::abs(centre.latitude_rad) > kPolarLatitude_rad;
-}
+bool IsPolar(const Place& centre) { return std::abs(centre.latitude_rad()) > kPolarLatitude_rad; }
 
 // Return the radii of curvature along the meridian and across it [m].
 double MeridianRadius(double latitude_rad) {
@@ -225,30 +223,29 @@ double ParallelRadius(double latitude_rad) {
 // true lengths along the centre's meridian and parallel.
 class BoxMap {
  public:
-  explicit BoxMap(const GeodeticPosition& centre)
+  explicit BoxMap(const Place& centre)
       : centre_(centre),
-        rad_per_east_m_(1.0 / ParallelRadius(centre.latitude_rad)),
-        rad_per_north_m_(1.0 / MeridianRadius(centre.latitude_rad)) {}
+        rad_per_east_m_(1.0 / ParallelRadius(centre.latitude_rad())),
+        rad_per_north_m_(1.0 / MeridianRadius(centre.latitude_rad())) {}
 
-  [[nodiscard]] GeodeticPosition At(double east_m, double north_m) const {
-    return {centre_.latitude_rad + north_m * rad_per_north_m_,
-            centre_.longitude_rad + east_m * rad_per_east_m_, 0.0};
+  [[nodiscard]] Place At(double east_m, double north_m) const {
+    return PlaceFromRadians(centre_.latitude_rad() + north_m * rad_per_north_m_,
+                            centre_.longitude_rad() + east_m * rad_per_east_m_, 0.0);
   }
   // Returns the centre of the map for which `place` lies east_m east and north_m north of it. Each
   // pass reduces the error by the relative change of the meridian's radius over that distance:
   // under 1e-4.
-  [[nodiscard]] static GeodeticPosition CentreSeenFrom(const GeodeticPosition& place, double east_m,
-                                                       double north_m) {
+  [[nodiscard]] static Place CentreSeenFrom(const Place& place, double east_m, double north_m) {
     constexpr int kPasses = 5;
-    double latitude = place.latitude_rad;
+    double latitude = place.latitude_rad();
     for (int pass = 0; pass < kPasses; ++pass)
-      latitude = place.latitude_rad - north_m / MeridianRadius(latitude);
-    return {latitude, WrappedLongitude(place.longitude_rad - east_m / ParallelRadius(latitude)),
-            0.0};
+      latitude = place.latitude_rad() - north_m / MeridianRadius(latitude);
+    const double longitude = place.longitude_rad() - east_m / ParallelRadius(latitude);
+    return WithWrappedLongitude(PlaceFromRadians(latitude, longitude, 0.0));
   }
 
  private:
-  GeodeticPosition centre_;
+  Place centre_;
   double rad_per_east_m_;
   double rad_per_north_m_;
 };
@@ -257,44 +254,44 @@ class BoxMap {
 // equidistant, its plane seen from above, x to longitude 90.
 class PolarMap {
  public:
-  explicit PolarMap(const GeodeticPosition& centre)
-      : hemisphere_(centre.latitude_rad > 0.0 ? 1.0 : -1.0),
-        longitude_rad_(centre.longitude_rad),
+  explicit PolarMap(const Place& centre)
+      : hemisphere_(centre.latitude_rad() > 0.0 ? 1.0 : -1.0),
+        longitude_rad_(centre.longitude_rad()),
         radius_m_(MeridianRadius(0.5 * kPi)),
         centre_(PlaneOf(centre)) {}
 
-  [[nodiscard]] GeodeticPosition At(double east_m, double north_m) const {
+  [[nodiscard]] Place At(double east_m, double north_m) const {
     const glm::dvec2 plane = centre_ + east_m * East() + north_m * North();
     const double latitude = hemisphere_ * (0.5 * kPi - glm::length(plane) / radius_m_);
-    return {latitude, std::atan2(plane.x, -hemisphere_ * plane.y), 0.0};
+    return PlaceFromRadians(latitude, std::atan2(plane.x, -hemisphere_ * plane.y), 0.0);
   }
   // Returns the position of a place east and north of the centre [m].
-  [[nodiscard]] glm::dvec2 From(const GeodeticPosition& place) const {
+  [[nodiscard]] glm::dvec2 From(const Place& place) const {
     const glm::dvec2 step = PlaneOf(place) - centre_;
     return {glm::dot(step, East()), glm::dot(step, North())};
   }
   // Returns the centre of the map for which `place` lies east_m east and north_m north of it.
-  [[nodiscard]] static GeodeticPosition CentreSeenFrom(const GeodeticPosition& place, double east_m,
-                                                       double north_m) {
-    const double hemisphere = place.latitude_rad > 0.0 ? 1.0 : -1.0;
+  [[nodiscard]] static Place CentreSeenFrom(const Place& place, double east_m, double north_m) {
+    const double hemisphere = place.latitude_rad() > 0.0 ? 1.0 : -1.0;
     const double radius_m = MeridianRadius(0.5 * kPi);
-    const double from_pole_m = (0.5 * kPi - std::abs(place.latitude_rad)) * radius_m;
+    const double from_pole_m = (0.5 * kPi - std::abs(place.latitude_rad())) * radius_m;
     const double square_m2 = from_pole_m * from_pole_m - east_m * east_m;
     const double along_m = std::sqrt(std::max(square_m2, 0.0));
     const double centre_from_pole_m = along_m + hemisphere * north_m;
-    return {hemisphere * (0.5 * kPi - centre_from_pole_m / radius_m),
-            WrappedLongitude(place.longitude_rad - std::atan2(east_m, along_m)), 0.0};
+    return WithWrappedLongitude(
+        PlaceFromRadians(hemisphere * (0.5 * kPi - centre_from_pole_m / radius_m),
+                         place.longitude_rad() - std::atan2(east_m, along_m), 0.0));
   }
   // Returns the clockwise angle from the centre's meridian to a place's meridian.
-  [[nodiscard]] double Convergence(const GeodeticPosition& place) const {
-    return -hemisphere_ * (place.longitude_rad - longitude_rad_);
+  [[nodiscard]] double Convergence(const Place& place) const {
+    return -hemisphere_ * (place.longitude_rad() - longitude_rad_);
   }
 
  private:
-  [[nodiscard]] glm::dvec2 PlaneOf(const GeodeticPosition& place) const {
-    const double from_pole = (0.5 * kPi - hemisphere_ * place.latitude_rad) * radius_m_;
-    return {from_pole * std::sin(place.longitude_rad),
-            -hemisphere_ * from_pole * std::cos(place.longitude_rad)};
+  [[nodiscard]] glm::dvec2 PlaneOf(const Place& place) const {
+    const double from_pole = (0.5 * kPi - hemisphere_ * place.latitude_rad()) * radius_m_;
+    return {from_pole * std::sin(place.longitude_rad()),
+            -hemisphere_ * from_pole * std::cos(place.longitude_rad())};
   }
   [[nodiscard]] glm::dvec2 East() const {
     return {std::cos(longitude_rad_), hemisphere_ * std::sin(longitude_rad_)};
@@ -310,16 +307,16 @@ class PolarMap {
 };
 
 // BoxGrid and PolarGrid return a grid without heights if the land has none.
-ElevationGrid BoxGrid(const Land& land, const GeodeticPosition& centre) {
+ElevationGrid BoxGrid(const Land& land, const Place& centre) {
   const BoxMap map(centre);
   const double half_m = 0.5 * land.spacing_m * (land.size - 1);
-  const GeodeticPosition north_west = map.At(-half_m, half_m);
-  const GeodeticPosition south_east = map.At(half_m, -half_m);
+  const Place north_west = map.At(-half_m, half_m);
+  const Place south_east = map.At(half_m, -half_m);
   ElevationGrid grid;
-  grid.west_rad = north_west.longitude_rad;
-  grid.north_rad = north_west.latitude_rad;
-  grid.step_lon_rad = (south_east.longitude_rad - north_west.longitude_rad) / (land.size - 1);
-  grid.step_lat_rad = (north_west.latitude_rad - south_east.latitude_rad) / (land.size - 1);
+  grid.west_rad = north_west.longitude_rad();
+  grid.north_rad = north_west.latitude_rad();
+  grid.step_lon_rad = (south_east.longitude_rad() - north_west.longitude_rad()) / (land.size - 1);
+  grid.step_lat_rad = (north_west.latitude_rad() - south_east.latitude_rad()) / (land.size - 1);
   grid.columns = land.size;
   grid.rows = land.size;
   grid.height_m = land.height_m;
@@ -328,13 +325,13 @@ ElevationGrid BoxGrid(const Land& land, const GeodeticPosition& centre) {
 
 // Returns a grid of all longitudes from the pole to beyond the range, without ground outside of the
 // range.
-ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
+ElevationGrid PolarGrid(const Land& land, const Place& centre) {
   constexpr double kRowSpacing_m = 100.0;
   constexpr int kColumns = 2048;
   const PolarMap map(centre);
   const double half_m = 0.5 * land.spacing_m * (land.size - 1);
   const double radius_m = MeridianRadius(0.5 * kPi);
-  const double to_pole_m = std::abs(0.5 * kPi - std::abs(centre.latitude_rad)) * radius_m;
+  const double to_pole_m = std::abs(0.5 * kPi - std::abs(centre.latitude_rad())) * radius_m;
   ElevationGrid grid;
   grid.columns = kColumns;
   grid.rows = static_cast<int>(std::ceil((to_pole_m + std::sqrt(2.0) * half_m) / kRowSpacing_m));
@@ -342,13 +339,14 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
   grid.step_lat_rad = kRowSpacing_m / radius_m;
   grid.west_rad = -kPi;
   const double first = 0.5 * kPi - 0.5 * grid.step_lat_rad;  // half a step from the pole
-  grid.north_rad = centre.latitude_rad > 0.0 ? first : -first + (grid.rows - 1) * grid.step_lat_rad;
+  grid.north_rad =
+      centre.latitude_rad() > 0.0 ? first : -first + (grid.rows - 1) * grid.step_lat_rad;
   if (land.height_m.empty()) return grid;
   grid.height_m.reserve(static_cast<std::size_t>(grid.rows) * kColumns);
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const glm::dvec2 at =
-          map.From({grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column), 0.0});
+          map.From(PlaceFromRadians(grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column), 0.0));
       const bool inside = std::abs(at.x) <= half_m && std::abs(at.y) <= half_m;
       grid.height_m.push_back(inside ? CubicHeight(land, (half_m - at.y) / land.spacing_m,
                                                    (half_m + at.x) / land.spacing_m)
@@ -358,11 +356,10 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
   return grid;
 }
 
-ElevationGrid GridAt(const GeodeticPosition& centre, const Land& land) {
+ElevationGrid GridAt(const Place& centre, const Land& land) {
   const double most = 0.5 * kPi + kRangeViewNorth_m / MeridianRadius(0.5 * kPi);
-  RequireInRange(centre.latitude_rad, -most, most, "latitude_rad");
-  GeodeticPosition wrapped = centre;
-  wrapped.longitude_rad = WrappedLongitude(centre.longitude_rad);
+  RequireInRange(centre.latitude_rad(), -most, most, "latitude_rad");
+  const Place wrapped = WithWrappedLongitude(centre);
   return IsPolar(wrapped) ? PolarGrid(land, wrapped) : BoxGrid(land, wrapped);
 }
 
@@ -370,15 +367,15 @@ ElevationGrid GridAt(const GeodeticPosition& centre, const Land& land) {
 
 std::vector<float> MadeRangeHeights(std::uint32_t seed) { return RangeLand(seed).height_m; }
 
-ElevationGrid ProceduralMountains(const GeodeticPosition& centre, std::uint32_t seed) {
+ElevationGrid ProceduralMountains(const Place& centre, std::uint32_t seed) {
   return GridAt(centre, *LandOf(seed));
 }
 
-ElevationGrid ProceduralMountainsExtent(const GeodeticPosition& centre) {
+ElevationGrid ProceduralMountainsExtent(const Place& centre) {
   return GridAt(centre, GridOf(kRangeSize));
 }
 
-BuiltInView ProceduralMountainsViewAboveGround(const GeodeticPosition& centre) {
+BuiltInView ProceduralMountainsViewAboveGround(const Place& centre) {
   constexpr double kAboveGround_m = 60.0;
   BuiltInView view{{}, 161.0, 0.5, 50.0};
   if (IsPolar(centre)) {
@@ -393,17 +390,16 @@ BuiltInView ProceduralMountainsViewAboveGround(const GeodeticPosition& centre) {
   return view;
 }
 
-GeodeticPosition CentreOfRangeSeenFrom(const GeodeticPosition& place) {
-  const GeodeticPosition centre =
-      BoxMap::CentreSeenFrom(place, kRangeViewEast_m, kRangeViewNorth_m);
+Place CentreOfRangeSeenFrom(const Place& place) {
+  const Place centre = BoxMap::CentreSeenFrom(place, kRangeViewEast_m, kRangeViewNorth_m);
   return IsPolar(centre) ? PolarMap::CentreSeenFrom(place, kRangeViewEast_m, kRangeViewNorth_m)
                          : centre;
 }
 
-BuiltInView ProceduralMountainsView(const GeodeticPosition& centre, const ElevationGrid& range) {
+BuiltInView ProceduralMountainsView(const Place& centre, const ElevationGrid& range) {
   BuiltInView view = ProceduralMountainsViewAboveGround(centre);
   const std::optional<double> ground =
-      range.HeightAt(view.eye.latitude_rad, view.eye.longitude_rad);
+      range.HeightAt(view.eye.latitude_rad(), view.eye.longitude_rad());
   if (!ground)
     throw InternalError("the built-in view lies outside the range that it was asked for");
   view.eye.height_m += *ground;

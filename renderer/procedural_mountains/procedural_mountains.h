@@ -18,11 +18,10 @@ namespace alpenglow::renderer {
 /// the range falls to 0 m at the rim. Each seed has different mountains; the foreland behind the
 /// view is always that of seed 0. It takes two seconds of processor time, for seed 0 only once per
 /// machine.
-[[nodiscard]] ElevationGrid ProceduralMountains(const GeodeticPosition& centre,
-                                                std::uint32_t seed = 0);
+[[nodiscard]] ElevationGrid ProceduralMountains(const Place& centre, std::uint32_t seed = 0);
 
 /// Returns the grid of the range without heights, immediately.
-[[nodiscard]] ElevationGrid ProceduralMountainsExtent(const GeodeticPosition& centre);
+[[nodiscard]] ElevationGrid ProceduralMountainsExtent(const Place& centre);
 
 /// Fingerprint of the heights of seed 0, see FingerprintOf (land.h).
 inline constexpr std::uint64_t kProceduralMountainsFingerprint = 15784046122448507333ULL;
@@ -33,7 +32,7 @@ inline constexpr std::uint64_t kProceduralMountainsFingerprint = 157840461224485
 
 /// Position and direction of a view.
 struct BuiltInView {
-  GeodeticPosition eye;
+  Place eye;
   double heading_deg = 0.0;  // clockwise from north
   double pitch_deg = 0.0;    // up is positive
   double fov_deg = 0.0;      // horizontal
@@ -41,8 +40,7 @@ struct BuiltInView {
 
 /// Returns the view that the range was designed for: from a shoulder of the foothills to the
 /// highest peak, chain behind chain, east at the left.
-[[nodiscard]] BuiltInView ProceduralMountainsView(const GeodeticPosition& centre,
-                                                  const ElevationGrid& range);
+[[nodiscard]] BuiltInView ProceduralMountainsView(const Place& centre, const ElevationGrid& range);
 
 /// Height of the ground [m] at the position of the view, known before a range is made. It is equal
 /// for all seeds to a centimetre; beside a pole, where the heights are resampled, to some metres.
@@ -50,12 +48,12 @@ inline constexpr double kRangeViewGround_m = 2084.44;
 
 /// Returns ProceduralMountainsView without the heights of the range: eye.height_m is relative to
 /// the ground.
-[[nodiscard]] BuiltInView ProceduralMountainsViewAboveGround(const GeodeticPosition& centre);
+[[nodiscard]] BuiltInView ProceduralMountainsViewAboveGround(const Place& centre);
 
 /// Returns the centre of the range whose built-in view is at a place, to a micrometre. A centre
 /// beyond a pole keeps its meridian: its latitude exceeds 90 degrees. The view is 2 km east of its
 /// centre's meridian, which is impossible for a place within 2 km of a pole: the view is then
 /// within 4 km of the place.
-[[nodiscard]] GeodeticPosition CentreOfRangeSeenFrom(const GeodeticPosition& place);
+[[nodiscard]] Place CentreOfRangeSeenFrom(const Place& place);
 
 }  // namespace alpenglow::renderer

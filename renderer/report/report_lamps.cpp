@@ -120,7 +120,7 @@ struct RunwayStage {
   explicit RunwayStage(const Scene& of)
       : scene(of),
         ground(LoadGround(scene)),
-        medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
+        medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad())),
         colour(medium.wavelengths_nm) {}
 
   Scene scene;

@@ -267,13 +267,13 @@ class PicturesTopic {
 
 /// Returns a lamp of a runway that points east, placed along the runway from its threshold and left
 /// of its centreline.
-Light RunwayLamp(const GeodeticPosition& threshold, double along_m, double left_m, double height_m,
+Light RunwayLamp(const Place& threshold, double along_m, double left_m, double height_m,
                  double candela) {
   constexpr double kRadius_m = 6371000.0;
   Light light;
-  light.latitude_rad = threshold.latitude_rad + left_m / kRadius_m;
-  light.longitude_rad =
-      threshold.longitude_rad + along_m / (kRadius_m * std::cos(threshold.latitude_rad));
+  light.place = PlaceFromRadians(
+      threshold.latitude_rad() + left_m / kRadius_m,
+      threshold.longitude_rad() + along_m / (kRadius_m * std::cos(threshold.latitude_rad())), 0.0);
   light.height = {height_m, false};
   light.intensity_cd = candela;
   return light;
@@ -284,7 +284,7 @@ Light RunwayLamp(const GeodeticPosition& threshold, double along_m, double left_
 Scene RunwayScene(int lamps, bool with_beam) {
   constexpr double kLength_m = 1800.0, kHalfWidth_m = 23.0, kEye_m = 38.0, kApproach_m = 420.0;
   constexpr double kVisibility_m = 900.0;
-  const GeodeticPosition threshold = PlaceFromDegrees(47.46, 8.55, 0.0);
+  const Place threshold{47.46, 8.55, 0.0};
   Scene scene;
   scene.place = threshold;
   scene.medium = MediumPreset("earth");

@@ -61,7 +61,7 @@ ShaftPlace Waves() {
 
 ShaftPlace OverTheRange() {
   Scene scene;
-  scene.place = PlaceFromDegrees(47.0, 11.0, 0.0);
+  scene.place = {47.0, 11.0, 0.0};
   scene.medium = MediumPreset("earth");
   scene.camera.height = {300.0, true};
   SceneGround ground = LoadGround(scene);

@@ -41,7 +41,7 @@ NamedPlace PlaceOf(const std::vector<std::string_view>& fields) {
   place.name = fields[2];
   place.also = fields[3];
   place.place =
-      PlaceFromDegrees(ExactNumber(fields[4]), ExactNumber(fields[5]), ExactNumber(fields[6]));
+      CheckedPlace({ExactNumber(fields[4]), ExactNumber(fields[5]), ExactNumber(fields[6])});
   place.heading_rad = ExactNumber(fields[7]) * kRadiansPerDegree;
   place.zone = fields[8];
   return place;
@@ -150,9 +150,9 @@ std::vector<Ranked> RankedPlaces(std::string_view text) {
                                RankedPlaces(*nearest).front().place->name));
 }
 
-double Distance(const GeodeticPosition& a, const GeodeticPosition& b) {
-  const glm::dvec3 apart = (EcefFromGeodetic(kWgs84, {a.latitude_rad, a.longitude_rad, 0.0}) -
-                            EcefFromGeodetic(kWgs84, {b.latitude_rad, b.longitude_rad, 0.0}))
+double Distance(const Place& a, const Place& b) {
+  const glm::dvec3 apart = (EcefFromGeodetic(kWgs84, {a.latitude_deg, a.longitude_deg, 0.0}) -
+                            EcefFromGeodetic(kWgs84, {b.latitude_deg, b.longitude_deg, 0.0}))
                                .xyz;
   return std::sqrt(apart.x * apart.x + apart.y * apart.y + apart.z * apart.z);
 }
@@ -195,8 +195,8 @@ const NamedPlace& PlaceNamed(std::string_view text) {
   throw InputError(fmt::format("place \"{}\" could be {}", text, fmt::join(names, ", ")));
 }
 
-std::string ZoneNear(const GeodeticPosition& place, const std::optional<std::string>& scene_zone,
-                     const GeodeticPosition& scene_place) {
+std::string ZoneNear(const Place& place, const std::optional<std::string>& scene_zone,
+                     const Place& scene_place) {
   constexpr double kOfScene_m = 300e3, kOfList_m = 150e3;
   if (scene_zone && Distance(place, scene_place) < kOfScene_m) return *scene_zone;
   const auto places = NamedPlaces();
@@ -205,7 +205,7 @@ std::string ZoneNear(const GeodeticPosition& place, const std::optional<std::str
         return Distance(place, a.place) < Distance(place, b.place);
       });
   if (Distance(place, nearest->place) < kOfList_m) return nearest->zone;
-  const double turns = std::remainder(place.longitude_rad, 2.0 * kPi) / (2.0 * kPi);
+  const double turns = std::remainder(place.longitude_deg, 360.0) / 360.0;
   const int ahead_h = static_cast<int>(std::lround(24.0 * turns));
   if (ahead_h == 0) return "Etc/GMT";
   return fmt::format("Etc/GMT{}{}", ahead_h > 0 ? "-" : "+", std::abs(ahead_h));

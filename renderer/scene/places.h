@@ -22,7 +22,7 @@ struct NamedPlace {
   PlaceKind kind;
   std::string code;        // ICAO code of airports: "LSZH"; otherwise empty
   std::string name, also;  // "Dufourspitze" and "Monte Rosa"; UTF-8
-  GeodeticPosition place;  // the height is above the sea
+  Place place;             // the height is above the sea
   double heading_rad;      // heading of the runway
   std::string zone;        // IANA name
 };
@@ -47,9 +47,8 @@ struct NamedPlace {
 /// Returns the time zone at a place: that of the scene within 300 km of the scene, that of the
 /// nearest place of the list within 150 km, otherwise the whole hour of the longitude ("Etc/GMT-9"
 /// is nine hours ahead).
-[[nodiscard]] std::string ZoneNear(const GeodeticPosition& place,
-                                   const std::optional<std::string>& scene_zone,
-                                   const GeodeticPosition& scene_place);
+[[nodiscard]] std::string ZoneNear(const Place& place, const std::optional<std::string>& scene_zone,
+                                   const Place& scene_place);
 
 /// Local time at a place.
 struct LocalTime {

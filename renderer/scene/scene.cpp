@@ -70,7 +70,7 @@ void ReadPlace(const TomlTable& document, Scene& scene) {
   const double longitude = Required(*table, "longitude");
   PlaceFields().Read(*table, scene);
   if (scene.zone) At(*table, "zone", [&] { return FormatInZone(UtcTime{}, *scene.zone); });
-  scene.place = PlaceFromDegrees(latitude, longitude, 0.0);
+  scene.place = CheckedPlace({latitude, longitude, 0.0});
 }
 
 std::optional<UtcTime> TimeOf(const TomlTable& document, const std::optional<std::string>& zone) {

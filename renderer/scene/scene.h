@@ -70,10 +70,10 @@ struct TerrainSource {
   Kind kind = Kind::kProceduralMountains;
   std::filesystem::path file;
   VoidPolicy voids = VoidPolicy::kFill;
-  UpAxis up = UpAxis::kZ;                                 // up axis of the mesh
-  std::optional<GeodeticPosition> centre = std::nullopt;  // centre of the range; empty: the scene's
-                                                          // place
-  std::uint32_t range_seed = 0;                           // seed of the range
+  UpAxis up = UpAxis::kZ;                      // up axis of the mesh
+  std::optional<Place> centre = std::nullopt;  // centre of the range; empty: the scene's
+                                               // place
+  std::uint32_t range_seed = 0;                // seed of the range
   bool is_default = true;                 // terrain was not specified: the range stands in for it
   std::filesystem::path colour = {};      // image over the terrain, see ColourDrape; empty: none
   std::filesystem::path land_cover = {};  // land cover map; excludes `colour`
@@ -120,8 +120,7 @@ struct GroundCover {
 struct Light {
   enum class Type { kPoint, kSpot };
   Type type = Type::kPoint;
-  double latitude_rad = 0.0;
-  double longitude_rad = 0.0;
+  Place place;  // with height 0
   Height height;
   std::optional<double> intensity_cd;        // maximum; empty: from the IES file
   double temperature_k = 3000.0;             // of a black body with the lamp's colour
@@ -148,8 +147,7 @@ struct MediumLayer {
 /// value, or one per wavelength of the medium.
 struct Volume {
   VolumePlacement::Shape shape = VolumePlacement::Shape::kBox;
-  double latitude_rad = 0.0;
-  double longitude_rad = 0.0;
+  Place place;                                  // with height 0
   Height height;                                // height of the underside
   std::array<double, 3> size_m{};               // across its heading, along it, up
   double heading_rad = 0.0;                     // clockwise from north
@@ -164,7 +162,7 @@ struct Volume {
 };
 
 struct Scene {
-  GeodeticPosition place;           // with height 0
+  Place place;                      // with height 0
   std::optional<std::string> zone;  // IANA name
   std::optional<UtcTime> time;
   Camera camera;

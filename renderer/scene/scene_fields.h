@@ -34,7 +34,7 @@ struct SceneSection {
 /// Returns the sections in the order of the file.
 [[nodiscard]] std::vector<SceneSection> SectionsOfScene();
 
-/// The deepest place [m above the ellipsoid], the limit of PlaceFromDegrees, and the highest.
+/// The deepest place [m above the ellipsoid], the limit of CheckedPlace, and the highest.
 inline constexpr double kDeepestPlace_m = -12000.0;
 inline constexpr double kHighestPlace_m = 1e9;
 

@@ -28,29 +28,29 @@ std::filesystem::path DataOfGrid(const Volume& volume) {
 }
 
 struct View {
-  GeodeticPosition place;
+  Place place;
   Height height;
   double heading, pitch, fov;
 };
 
 /// Returns the place of the options on the ellipsoid, if they give one.
-std::optional<GeodeticPosition> PlaceTyped(const SceneOptions& options) {
+std::optional<Place> PlaceTyped(const SceneOptions& options) {
   if (!options.place && !options.latitude && !options.longitude) return std::nullopt;
   double latitude = kHomeLatitude, longitude = kHomeLongitude;
   if (options.place) {
-    const GeodeticPosition& place = PlaceNamed(*options.place).place;
-    latitude = place.latitude_rad / kRadiansPerDegree;
-    longitude = place.longitude_rad / kRadiansPerDegree;
+    const Place& place = PlaceNamed(*options.place).place;
+    latitude = place.latitude_deg;
+    longitude = place.longitude_deg;
   }
-  return PlaceFromDegrees(options.latitude.value_or(latitude),
-                          options.longitude.value_or(longitude), 0.0);
+  return CheckedPlace(
+      {options.latitude.value_or(latitude), options.longitude.value_or(longitude), 0.0});
 }
 
-GeodeticPosition Home() { return PlaceFromDegrees(kHomeLatitude, kHomeLongitude, 0.0); }
+Place Home() { return CheckedPlace({kHomeLatitude, kHomeLongitude, 0.0}); }
 
 /// Returns the built-in range, moved to a place given on the command line, or else around
 /// kHomeLatitude and kHomeLongitude.
-TerrainSource RangeOf(const std::optional<GeodeticPosition>& typed) {
+TerrainSource RangeOf(const std::optional<Place>& typed) {
   if (typed) return RangeSeenFrom(*typed);
   TerrainSource range;
   range.centre = Home();
@@ -67,11 +67,11 @@ TerrainSource ElevationModelsOf(const std::vector<std::string>& dem) {
 }
 
 /// Returns the default view: that of the range, or horizontally to the north.
-View ViewOf(const TerrainSource& terrain, const std::optional<GeodeticPosition>& typed) {
+View ViewOf(const TerrainSource& terrain, const std::optional<Place>& typed) {
   if (terrain.kind == TerrainSource::Kind::kElevationModel)
     return {typed.value_or(Home()), Height{}, 0.0, 0.0, 60.0};
   const BuiltInView view = ProceduralMountainsViewAboveGround(*terrain.centre);
-  GeodeticPosition place = typed.value_or(view.eye);
+  Place place = typed.value_or(view.eye);
   place.height_m = 0.0;
   return {place, Height{view.eye.height_m, true}, view.heading_deg, view.pitch_deg, view.fov_deg};
 }
@@ -91,14 +91,13 @@ Height HeightFrom(const SceneOptions& options, const Height& fallback) {
 
 // Returns a seed that is equal for places given or computed with small differences: the cells are
 // offset so that such places do not fall on a cell border.
-std::uint32_t SeedAt(const GeodeticPosition& place) {
+std::uint32_t SeedAt(const Place& place) {
   constexpr double kCellsPerDegree = 100.0, kOffset = 0.5 + 1.0 / 3e3;
-  const auto cell = [](double angle_rad) {
-    return static_cast<std::int32_t>(
-        std::floor(angle_rad / kRadiansPerDegree * kCellsPerDegree + kOffset));
+  const auto cell = [](double angle_deg) {
+    return static_cast<std::int32_t>(std::floor(angle_deg * kCellsPerDegree + kOffset));
   };
   const std::uint32_t seed =
-      LatticeHash(cell(WrappedLongitude(place.longitude_rad)), cell(place.latitude_rad), 90);
+      LatticeHash(cell(WrappedLongitude(place.longitude_deg)), cell(place.latitude_deg), 90);
   return std::max(seed, 1U);
 }
 
@@ -144,11 +143,11 @@ LandSource LandSourceOf(const Scene& scene) {
   return source;
 }
 
-bool IsOnRangeAtHome(const GeodeticPosition& place) {
-  return ProceduralMountainsExtent(Home()).Covers(place.latitude_rad, place.longitude_rad);
+bool IsOnRangeAtHome(const Place& place) {
+  return ProceduralMountainsExtent(Home()).Covers(place.latitude_rad(), place.longitude_rad());
 }
 
-TerrainSource RangeSeenFrom(const GeodeticPosition& place) {
+TerrainSource RangeSeenFrom(const Place& place) {
   TerrainSource range;
   range.centre = CentreOfRangeSeenFrom(place);
   range.range_seed = IsOnRangeAtHome(place) ? 0 : SeedAt(place);
@@ -156,7 +155,7 @@ TerrainSource RangeSeenFrom(const GeodeticPosition& place) {
 }
 
 Scene SceneFromOptions(const SceneOptions& options) {
-  const std::optional<GeodeticPosition> typed = PlaceTyped(options);
+  const std::optional<Place> typed = PlaceTyped(options);
   Scene scene;
   scene.terrain = options.dem.empty() ? RangeOf(typed) : ElevationModelsOf(options.dem);
   const View view = ViewOf(scene.terrain, typed);

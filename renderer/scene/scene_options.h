@@ -44,10 +44,10 @@ struct SceneOptions {
 /// Returns the built-in range whose view is at `place`. Places on the range around kHomeLatitude
 /// and kHomeLongitude get its mountains (seed 0). Other places get their own mountains, which are
 /// equal within a hundredth of a degree and in every run.
-[[nodiscard]] TerrainSource RangeSeenFrom(const GeodeticPosition& place);
+[[nodiscard]] TerrainSource RangeSeenFrom(const Place& place);
 
 /// Returns whether a place lies on the built-in range around kHomeLatitude and kHomeLongitude.
-[[nodiscard]] bool IsOnRangeAtHome(const GeodeticPosition& place);
+[[nodiscard]] bool IsOnRangeAtHome(const Place& place);
 
 /// Returns the scene with the eye at latitude and longitude or the named place, on any ground. With
 /// `dem` the default is 2 m above the ground, looking north, horizontally, 60 degrees wide. Without

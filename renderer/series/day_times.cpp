@@ -37,8 +37,7 @@ constexpr std::array<std::array<const char*, 2>, kTimesOfDay.size()> kHeads{{{"a
 
 /// Returns the visible eclipse of the mean solar day, which has the daylight in its middle.
 std::optional<SeenEclipse> EclipseOf(const EventDay& day, const DayTimes& times) {
-  const UtcTime midnight =
-      MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), *day.around);
+  const UtcTime midnight = MeanSolarMidnight(day.place, *day.around);
   const auto eclipse = FindSolarEclipse(day.place, midnight, kSecondsPerDay);
   if (!eclipse) return std::nullopt;
   std::vector<SolarEclipse::Moment> seen;

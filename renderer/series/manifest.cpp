@@ -115,8 +115,7 @@ std::string TerrainText(const Scene& scene, const FileHashes& hashes) {
                                terrain.range_seed == 0
                                    ? "built-in range"
                                    : fmt::format("built-in range {}", terrain.range_seed),
-                               DegreesText(terrain.centre->latitude_rad),
-                               DegreesText(terrain.centre->longitude_rad));
+                               terrain.centre->latitude_deg, terrain.centre->longitude_deg);
     case TerrainSource::Kind::kElevationModel:
       return fmt::format(
           "{}, voids {}",
@@ -131,12 +130,13 @@ std::string TerrainText(const Scene& scene, const FileHashes& hashes) {
 }
 
 std::string LightText(const Light& light, const FileHashes& hashes) {
-  std::string text = fmt::format(
-      "{} at {}, {}, {}: {} cd, {} K, radius {} m",
-      light.type == Light::Type::kSpot ? "spot" : "point", DegreesText(light.latitude_rad),
-      DegreesText(light.longitude_rad), HeightText(light.height),
-      light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
-      light.temperature_k, light.radius_m);
+  std::string text =
+      fmt::format("{} at {}, {}, {}: {} cd, {} K, radius {} m",
+                  light.type == Light::Type::kSpot ? "spot" : "point",
+                  fmt::format("{}", light.place.latitude_deg),
+                  fmt::format("{}", light.place.longitude_deg), HeightText(light.height),
+                  light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
+                  light.temperature_k, light.radius_m);
   if (light.ies) {
     text += ", " + hashes.names_and_hashes.at(*light.ies);
   } else if (light.type == Light::Type::kPoint) {
@@ -239,8 +239,8 @@ Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes) {
   const Camera& camera = scene.camera;
   Metadata metadata = {{"Software", ProducerText()},
                        {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
-                       {"alpenglow.latitude_deg", DegreesText(scene.place.latitude_rad)},
-                       {"alpenglow.longitude_deg", DegreesText(scene.place.longitude_rad)},
+                       {"alpenglow.latitude_deg", fmt::format("{}", scene.place.latitude_deg)},
+                       {"alpenglow.longitude_deg", fmt::format("{}", scene.place.longitude_deg)},
                        {"alpenglow.camera_height", HeightText(camera.height)},
                        {"alpenglow.heading_deg", DegreesText(camera.heading_rad)},
                        {"alpenglow.pitch_deg", DegreesText(camera.pitch_rad)},
@@ -264,8 +264,8 @@ Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes) {
 }
 
 Metadata PoseMetadata(const CameraPose& pose) {
-  return {{"alpenglow.latitude_deg", DegreesText(pose.place.latitude_rad)},
-          {"alpenglow.longitude_deg", DegreesText(pose.place.longitude_rad)},
+  return {{"alpenglow.latitude_deg", fmt::format("{}", pose.place.latitude_deg)},
+          {"alpenglow.longitude_deg", fmt::format("{}", pose.place.longitude_deg)},
           {"alpenglow.camera_height", HeightText({pose.place.height_m, false})},
           {"alpenglow.heading_deg", DegreesText(pose.heading_rad)},
           {"alpenglow.pitch_deg", DegreesText(pose.pitch_rad)},
@@ -330,8 +330,8 @@ std::optional<double> FrameRecord::Number(std::string_view key) const {
   return number != nullptr ? std::optional(*number) : std::nullopt;
 }
 
-FrameRecord RecordOf(const Frame& frame, const GeodeticPosition& place,
-                     const std::optional<std::string>& zone, bool has_moon) {
+FrameRecord RecordOf(const Frame& frame, const Place& place, const std::optional<std::string>& zone,
+                     bool has_moon) {
   const SkyBodies bodies = SkyBodiesAt(place, frame.instant);
   FrameRecord record;
   record.Set("frame", frame.number);
@@ -348,8 +348,8 @@ FrameRecord RecordOf(const Frame& frame, const GeodeticPosition& place,
 
 void AddPose(const Frame& frame, const CameraPose& pose, FrameRecord& record) {
   record.Set("t_s", frame.path_s);
-  record.Set("latitude", pose.place.latitude_rad / kRadiansPerDegree);
-  record.Set("longitude", pose.place.longitude_rad / kRadiansPerDegree);
+  record.Set("latitude", pose.place.latitude_deg);
+  record.Set("longitude", pose.place.longitude_deg);
   record.Set("height_m", pose.place.height_m);
   record.Set("heading", pose.heading_rad / kRadiansPerDegree);
   record.Set("pitch", pose.pitch_rad / kRadiansPerDegree);

@@ -80,7 +80,7 @@ class FrameRecord {
 /// Returns the record of what is known before a frame is rendered, except its file: number, times,
 /// sun and moon.
 /// @param has_moon  false: no moon covers the sun.
-[[nodiscard]] FrameRecord RecordOf(const Frame& frame, const GeodeticPosition& place,
+[[nodiscard]] FrameRecord RecordOf(const Frame& frame, const Place& place,
                                    const std::optional<std::string>& zone, bool has_moon = true);
 /// Adds the position of a frame on a path, and its pose.
 void AddPose(const Frame& frame, const CameraPose& pose, FrameRecord& record);

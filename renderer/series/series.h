@@ -38,13 +38,13 @@ inline constexpr const char* kIlluminanceNote = "alpenglow.note.illuminance_lx";
 
 /// The eye of a series: at one place or along a path.
 struct SeriesViewpoint {
-  GeodeticPosition place;                // without a path
+  Place place;                           // without a path
   std::optional<std::string> zone = {};  // of the local times
   std::optional<CameraPath> path = {};   // camera path of Frame::path_s
   bool has_moon = true;  // the planet has the earth's moon, which can eclipse the sun
 
   /// Returns the place of the eye in a frame.
-  [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
+  [[nodiscard]] Place PlaceOf(const Frame& frame) const {
     return path ? path->PoseAt(frame.path_s).place : place;
   }
   /// Returns the record of what is known before a frame is rendered (manifest.h).

@@ -64,11 +64,11 @@ class Georeference {
 
   /// Counts whole turns of longitude so that places near this one lie beside it, and this one
   /// beside the picture.
-  void CentreOn(const GeodeticPosition& place) {
+  void CentreOn(const Place& place) {
     if (const auto xy = CrsOf(place)) near_x_ = (*xy)[0];
   }
 
-  [[nodiscard]] std::array<double, 2> PixelOf(const GeodeticPosition& place) const {
+  [[nodiscard]] std::array<double, 2> PixelOf(const Place& place) const {
     const auto xy = CrsOf(place);
     if (!xy)
       return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -83,8 +83,8 @@ class Georeference {
   }
 
  private:
-  [[nodiscard]] std::optional<std::array<double, 2>> CrsOf(const GeodeticPosition& place) const {
-    double x = place.longitude_rad / kRadiansPerDegree, y = place.latitude_rad / kRadiansPerDegree;
+  [[nodiscard]] std::optional<std::array<double, 2>> CrsOf(const Place& place) const {
+    double x = place.longitude_deg, y = place.latitude_deg;
     if (crs_from_geographic_->Transform(1, &x, &y) == 0) return std::nullopt;
     if (turn_ > 0.0) x -= turn_ * std::round((x - near_x_) / turn_);
     return std::array<double, 2>{x, y};
@@ -219,16 +219,16 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
   if (IsBesideTheLand())
     note_ = fmt::format("{}{}{}: lies beside the land of the scene, which keeps its own cover",
                         note_, note_.empty() ? "" : "; ", file.string());
-  const Place& a = places_.front();
-  const Place& b = places_.back();
+  const PicturePoint& a = places_.front();
+  const PicturePoint& b = places_.back();
   const double across = std::hypot(step_x_m_, step_y_m_) * (kGridNodes - 1);
   pixel_m_ = across / std::max(std::hypot(b.x - a.x, b.y - a.y), 1e-6);
 }
 
 bool ColourDrape::IsBesideTheLand() const {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  Place least{kFar, kFar}, most{-kFar, -kFar};
-  for (const Place& place : places_) {
+  PicturePoint least{kFar, kFar}, most{-kFar, -kFar};
+  for (const PicturePoint& place : places_) {
     if (!std::isfinite(place.x) || !std::isfinite(place.y)) continue;
     least = {std::min(least.x, place.x), std::min(least.y, place.y)};
     most = {std::max(most.x, place.x), std::max(most.y, place.y)};
@@ -240,7 +240,7 @@ bool ColourDrape::IsBesideTheLand() const {
            least.y <= picture.rows && most.y >= 0.0);
 }
 
-std::array<double, 4> ColourDrape::Bilinear(std::size_t number, const Place& at) const {
+std::array<double, 4> ColourDrape::Bilinear(std::size_t number, const PicturePoint& at) const {
   const Level& level = (*levels_)[number];
   const double scale = 1.0 / static_cast<double>(std::size_t{1} << number);
   const double x = std::clamp(at.x * scale - 0.5, 0.0, level.columns - 1.0);
@@ -272,14 +272,14 @@ std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, do
   const int column = std::min(static_cast<int>(gx), kGridNodes - 2);
   const int row = std::min(static_cast<int>(gy), kGridNodes - 2);
   const double fx = gx - column, fy = gy - row;
-  const Place* low = &places_[static_cast<std::size_t>(row * kGridNodes + column)];
-  const Place* high = low + kGridNodes;
-  const auto between = [&](double Place::*of) {
+  const PicturePoint* low = &places_[static_cast<std::size_t>(row * kGridNodes + column)];
+  const PicturePoint* high = low + kGridNodes;
+  const auto between = [&](double PicturePoint::*of) {
     const double south = low[0].*of + fx * (low[1].*of - low[0].*of);
     const double north = high[0].*of + fx * (high[1].*of - high[0].*of);
     return south + fy * (north - south);
   };
-  Place at{between(&Place::x), between(&Place::y)};
+  PicturePoint at{between(&PicturePoint::x), between(&PicturePoint::y)};
   const Level& finest_level = levels_->front();
   if (columns_of_turn_ > 0.0 && (at.x < 0.0 || at.x > finest_level.columns))
     at.x -= columns_of_turn_ * std::floor(at.x / columns_of_turn_);

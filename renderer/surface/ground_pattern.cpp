@@ -8,19 +8,20 @@
 
 namespace alpenglow::renderer {
 
-GeodeticPosition PatternOrigin(const GeodeticPosition& place) {
+Place PatternOrigin(const Place& place) {
   constexpr double kStep_rad = 15.0 * kRadiansPerDegree, kAlps_rad = 8.0 * kRadiansPerDegree;
-  const double latitude_rad = kStep_rad * std::round(place.latitude_rad / kStep_rad);
+  const double latitude_rad = kStep_rad * std::round(place.latitude_rad() / kStep_rad);
   const double around = std::round(2.0 * kPi * std::cos(latitude_rad) / kStep_rad);
-  if (around < 1.0) return {latitude_rad, 0.0, 0.0};
+  if (around < 1.0) return PlaceFromRadians(latitude_rad, 0.0, 0.0);
   const double step_rad = 2.0 * kPi / around;
-  const double steps = std::round((place.longitude_rad - kAlps_rad) / step_rad);
-  return {latitude_rad, WrappedLongitude(kAlps_rad + steps * step_rad), 0.0};
+  const double steps = std::round((place.longitude_rad() - kAlps_rad) / step_rad);
+  return WithWrappedLongitude(PlaceFromRadians(latitude_rad, kAlps_rad + steps * step_rad, 0.0));
 }
 
-GroundPattern::GroundPattern(const LocalFrame& frame, const GeodeticPosition& eye)
+GroundPattern::GroundPattern(const LocalFrame& frame, const Place& eye)
     : pattern_from_frame_(LocalFrame(frame.ellipsoid(), PatternOrigin(eye)), frame),
-      pole_(0.0, std::cos(frame.origin().latitude_rad), std::sin(frame.origin().latitude_rad)) {}
+      pole_(0.0, std::cos(frame.origin().latitude_rad()), std::sin(frame.origin().latitude_rad())) {
+}
 
 GroundPoint GroundPattern::At(const glm::dvec3& point) const {
   const glm::dvec3 at = pattern_from_frame_.Point(point);

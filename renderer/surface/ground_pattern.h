@@ -22,7 +22,7 @@
 namespace alpenglow::renderer {
 
 /// Returns the place where the plane nearest to another place touches the planet.
-[[nodiscard]] GeodeticPosition PatternOrigin(const GeodeticPosition& place);
+[[nodiscard]] Place PatternOrigin(const Place& place);
 
 /// The pattern around the origin of a frame (east, north, up). Points and directions are in that
 /// frame unless they are called those of the pattern. Immutable.
@@ -30,7 +30,7 @@ class GroundPattern {
  public:
   explicit GroundPattern(const LocalFrame& frame) : GroundPattern(frame, frame.origin()) {}
   /// @param eye  selects the plane.
-  GroundPattern(const LocalFrame& frame, const GeodeticPosition& eye);
+  GroundPattern(const LocalFrame& frame, const Place& eye);
 
   /// Returns the coordinates of a point in the pattern [m], without altitude and width.
   [[nodiscard]] GroundPoint At(const glm::dvec3& point) const;

@@ -215,7 +215,7 @@ double TopOf(const SceneGround& ground, double radius_m) {
 }  // namespace
 
 SceneGeometry::SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief,
-                             const GeodeticPosition& eye)
+                             const Place& eye)
     : ground_(ground),
       medium_(medium),
       pattern_(ground.frame, eye),

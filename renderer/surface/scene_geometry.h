@@ -136,7 +136,7 @@ class SceneGeometry {
       : SceneGeometry(ground, medium, with_relief, ground.frame.origin()) {}
   /// @param eye  selects the pattern of the ground.
   SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief,
-                const GeodeticPosition& eye);
+                const Place& eye);
 
   [[nodiscard]] double radius_m() const { return medium_.planet_radius_m; }
   [[nodiscard]] bool HasTerrain() const { return ground_.terrain.has_value(); }

@@ -22,7 +22,7 @@ namespace {
 constexpr double kReach_m = 20000.0;  // above any mountain, below any trench
 
 /// Returns the vertical of a place in a frame.
-glm::dvec3 UpAt(const LocalFrame& frame, const GeodeticPosition& place) {
+glm::dvec3 UpAt(const LocalFrame& frame, const Place& place) {
   const LocalFrame there(frame.ellipsoid(), place);
   return frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{glm::dvec3(0.0, 0.0, 1.0)})).xyz;
 }
@@ -59,15 +59,15 @@ Span Within(double middle, double half, int all) {
 
 // A circle on the sphere has its greatest extent in longitude away from the latitude of its centre;
 // over a pole it includes all longitudes.
-Span ColumnsAround(const ElevationGrid& grid, const GeodeticPosition& place, double distance_rad) {
-  const bool is_over_pole = distance_rad + std::abs(place.latitude_rad) >= 0.5 * kPi;
+Span ColumnsAround(const ElevationGrid& grid, const Place& place, double distance_rad) {
+  const bool is_over_pole = distance_rad + std::abs(place.latitude_rad()) >= 0.5 * kPi;
   const double half_rad =
-      is_over_pole ? kPi : std::asin(std::sin(distance_rad) / std::cos(place.latitude_rad));
+      is_over_pole ? kPi : std::asin(std::sin(distance_rad) / std::cos(place.latitude_rad()));
   const double half = half_rad / grid.step_lon_rad;
   const double centre_rad = grid.west_rad + 0.5 * (grid.columns - 1) * grid.step_lon_rad;
   const double middle =
       0.5 * (grid.columns - 1) +
-      std::remainder(place.longitude_rad - centre_rad, 2.0 * kPi) / grid.step_lon_rad;
+      std::remainder(place.longitude_rad() - centre_rad, 2.0 * kPi) / grid.step_lon_rad;
   if (!grid.ClosesAroundTheEarth()) return Within(middle, half, grid.columns);
   const double first = std::floor(middle - half);
   const double count = std::max(std::ceil(middle + half) - first, 1.0) + 1.0;
@@ -88,7 +88,7 @@ double EyeHeight(const Scene& scene, const ElevationGrid& grid) {
   const ElevationModel there =
       ReadElevation(scene.terrain.file, scene.terrain.voids, WindowAround(grid, scene.place, 0.0));
   return height.value_m +
-         there.grid.HeightAt(scene.place.latitude_rad, scene.place.longitude_rad).value_or(0.0);
+         there.grid.HeightAt(scene.place.latitude_rad(), scene.place.longitude_rad()).value_or(0.0);
 }
 
 // Returns the grid of all models together, without heights.
@@ -110,14 +110,14 @@ ModelInSight ReadModelsInSight(const Scene& scene) {
   std::vector<std::string> notes = tiles->notes();
   double eye_m = scene.camera.height.value_m;
   if (scene.camera.height.above_ground) {
-    const SampleSize step = SampleSizeAt(tiles->lattice(), scene.place.latitude_rad);
+    const SampleSize step = SampleSizeAt(tiles->lattice(), scene.place.latitude_rad());
     const double around_m = 2.0 * std::max(step.column_m, step.row_m);
     std::vector<std::string> said_below;
     const auto under_eye =
         ReadHeightsAround(tiles, scene.place, around_m, kMostSamples, said_below);
     if (under_eye)
-      eye_m +=
-          under_eye->HeightAt(scene.place.latitude_rad, scene.place.longitude_rad).value_or(0.0);
+      eye_m += under_eye->HeightAt(scene.place.latitude_rad(), scene.place.longitude_rad())
+                   .value_or(0.0);
   }
   const double sight_m = kEarth_m * Sight(eye_m);
   auto grid = ReadHeightsAround(tiles, scene.place, sight_m, kMostSamples, notes);
@@ -158,20 +158,20 @@ struct GroundRectangle {
 };
 
 // Returns whether any part of the model may be above the horizon of an eye, on a sphere.
-bool IsInSight(const ElevationGrid& grid, const GeodeticPosition& place, double eye_m) {
+bool IsInSight(const ElevationGrid& grid, const Place& place, double eye_m) {
   const GroundRectangle model(grid);
   float highest_m = 0.0F;
   for (const float height_m : grid.height_m) highest_m = std::max(highest_m, height_m);
-  const double latitude = place.latitude_rad / kRadiansPerDegree;
-  const double longitude = place.longitude_rad / kRadiansPerDegree;
+  const double latitude = place.latitude_deg;
+  const double longitude = place.longitude_deg;
   const double middle = 0.5 * (model.west + model.east);
   const double from_middle = std::remainder(longitude - middle, 360.0);
   const double half = 0.5 * (model.east - model.west);
   const double beside =
       std::max(std::abs(from_middle) - half, 0.0) * kRadiansPerDegree;  // difference of longitude
   const double nearest = std::clamp(latitude, model.south, model.north) * kRadiansPerDegree;
-  const double cosine = std::sin(place.latitude_rad) * std::sin(nearest) +
-                        std::cos(place.latitude_rad) * std::cos(nearest) * std::cos(beside);
+  const double cosine = std::sin(place.latitude_rad()) * std::sin(nearest) +
+                        std::cos(place.latitude_rad()) * std::cos(nearest) * std::cos(beside);
   return std::acos(std::clamp(cosine, -1.0, 1.0)) <
          HorizonDip(eye_m) + HorizonDip(static_cast<double>(highest_m));
 }
@@ -197,16 +197,14 @@ RangeText TextOfRange(double value, double low, double high) {
 // @param extent  of the whole model.
 // @param seen  the part of the model that has been read.
 void RequireEyeOver(const ElevationGrid& extent, const ElevationGrid& seen, const Scene& scene) {
-  const GeodeticPosition& place = scene.place;
-  if (extent.Covers(place.latitude_rad, place.longitude_rad)) return;
+  const Place& place = scene.place;
+  if (extent.Covers(place.latitude_rad(), place.longitude_rad())) return;
   const GroundRectangle model(extent);
   const Height& height = scene.camera.height;
   if (!height.above_ground && IsInSight(seen, place, height.value_m)) return;
-  const bool swapped_lies_inside = extent.Covers(place.longitude_rad, place.latitude_rad);
-  const RangeText latitude =
-      TextOfRange(place.latitude_rad / kRadiansPerDegree, model.south, model.north);
-  const RangeText longitude =
-      TextOfRange(place.longitude_rad / kRadiansPerDegree, model.west, model.east);
+  const bool swapped_lies_inside = extent.Covers(place.longitude_rad(), place.latitude_rad());
+  const RangeText latitude = TextOfRange(place.latitude_deg, model.south, model.north);
+  const RangeText longitude = TextOfRange(place.longitude_deg, model.west, model.east);
   throw InputError(fmt::format(
       "the camera at latitude {}, longitude {} is outside {}, which covers latitudes {} "
       "to {} and longitudes {} to {}{}",
@@ -255,13 +253,12 @@ std::optional<GroundHeights> GroundAtFoot(const std::optional<Terrain>& terrain)
   return GroundHeightsAlong(*terrain, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0));
 }
 
-std::string TextOf(const GeodeticPosition& place) {
-  return fmt::format("the eye at {:.6f}, {:.6f}", place.latitude_rad / kRadiansPerDegree,
-                     place.longitude_rad / kRadiansPerDegree);
+std::string TextOf(const Place& place) {
+  return fmt::format("the eye at {:.6f}, {:.6f}", place.latitude_deg, place.longitude_deg);
 }
 
 /// Throws InputError if the place is too far from the scene's place.
-CameraStand StandOver(const SceneGround& ground, const GeodeticPosition& place) {
+CameraStand StandOver(const SceneGround& ground, const Place& place) {
   const LocalFrame there(ground.frame.ellipsoid(), place);
   const auto in_frame = [&](const glm::dvec3& axis) {
     return ground.frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{axis})).xyz;
@@ -295,8 +292,8 @@ std::optional<GroundHeights> GroundHeightsAlong(const Terrain& terrain, const gl
 }
 
 std::optional<GroundHeights> GroundHeightsAt(const Terrain& terrain, const LocalFrame& frame,
-                                             const GeodeticPosition& place) {
-  GeodeticPosition foot = place;
+                                             const Place& place) {
+  Place foot = place;
   foot.height_m = 0.0;
   return GroundHeightsAlong(terrain, frame.EnuFromGeodetic(foot).xyz, UpAt(frame, foot));
 }
@@ -309,7 +306,7 @@ std::optional<SurfaceUnder> SurfaceUnderPoint(const Terrain& terrain, const glm:
 }
 
 std::optional<double> GroundUnderEye(const Terrain& terrain, const LocalFrame& frame,
-                                     const GeodeticPosition& place) {
+                                     const Place& place) {
   const auto surface =
       SurfaceUnderPoint(terrain, frame.EnuFromGeodetic(place).xyz, UpAt(frame, place));
   if (!surface) return std::nullopt;
@@ -320,9 +317,8 @@ double HorizonDip(double height_m) {
   return std::acos(kEarth_m / (kEarth_m + std::max(height_m, 0.0)));
 }
 
-GridWindow WindowAround(const ElevationGrid& grid, const GeodeticPosition& place,
-                        double distance_rad) {
-  const Span rows = Within((grid.north_rad - place.latitude_rad) / grid.step_lat_rad,
+GridWindow WindowAround(const ElevationGrid& grid, const Place& place, double distance_rad) {
+  const Span rows = Within((grid.north_rad - place.latitude_rad()) / grid.step_lat_rad,
                            distance_rad / grid.step_lat_rad, grid.rows);
   const Span columns = ColumnsAround(grid, place, distance_rad);
   return {columns.first, rows.first, columns.count, rows.count};
@@ -358,7 +354,7 @@ Ellipsoid EllipsoidOf(const Medium& medium) {
 }
 
 SceneGround LoadGround(const Scene& scene, Progress* progress) {
-  GeodeticPosition foot = scene.place;
+  Place foot = scene.place;
   foot.height_m = 0.0;
   const LocalFrame frame(EllipsoidOf(scene.medium), foot);
   LoadedMesh loaded = LoadMesh(scene, frame, progress);
@@ -394,14 +390,14 @@ CameraStand StandOfScene(const SceneGround& ground) {
   return {{0.0, 0.0, ground.eye_height_m}, glm::dmat3(1.0)};
 }
 
-void RequireOverGround(const GeodeticPosition& eye, double ground_m) {
+void RequireOverGround(const Place& eye, double ground_m) {
   if (eye.height_m >= ground_m) return;
   throw InputError(fmt::format("{} is {:.1f} m high; the ground there is at {} m", TextOf(eye),
                                eye.height_m,
                                ground_m == 0.0 ? "0" : fmt::format("{:.1f}", ground_m)));
 }
 
-CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place) {
+CameraStand StandAt(const SceneGround& ground, const Place& place) {
   const CameraStand stand = StandOver(ground, place);
   if (!ground.terrain) {
     RequireOverGround(place, 0.0);
@@ -411,7 +407,7 @@ CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place) {
   return stand;
 }
 
-double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place) {
+double GroundHeightUnder(const SceneGround& ground, const Place& place) {
   if (!ground.terrain) return 0.0;
   StandOver(ground, place);  // throws if the place is too far away
   const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place);

@@ -38,7 +38,7 @@ struct GroundHeights {
 /// @return empty if no surface lies within 20 km of the ellipsoid.
 [[nodiscard]] std::optional<GroundHeights> GroundHeightsAt(const Terrain& terrain,
                                                            const LocalFrame& frame,
-                                                           const GeodeticPosition& place);
+                                                           const Place& place);
 
 /// The surface below a point, and its height.
 struct SurfaceUnder {
@@ -55,7 +55,7 @@ struct SurfaceUnder {
                                                             const glm::dvec3& up);
 /// Returns the height above the ellipsoid of the surface below an eye at a place.
 [[nodiscard]] std::optional<double> GroundUnderEye(const Terrain& terrain, const LocalFrame& frame,
-                                                   const GeodeticPosition& place);
+                                                   const Place& place);
 
 /// Returns the dip of the horizon below the horizontal, which is also its distance along the
 /// earth's curve [radians], on a sphere without air.
@@ -63,7 +63,7 @@ struct SurfaceUnder {
 
 /// Returns the window of grid samples within a distance [radians of the earth's curve] of a place,
 /// at least 2 x 2; for a place outside the grid, the nearest samples.
-[[nodiscard]] GridWindow WindowAround(const ElevationGrid& grid, const GeodeticPosition& place,
+[[nodiscard]] GridWindow WindowAround(const ElevationGrid& grid, const Place& place,
                                       double distance_rad);
 
 struct ModelInSight {
@@ -100,7 +100,7 @@ struct SceneGround {
 [[nodiscard]] SceneGround LoadGround(const Scene& scene, Progress* progress = nullptr);
 
 /// Throws InputError if an eye is below ground of this height above the ellipsoid [m].
-void RequireOverGround(const GeodeticPosition& eye, double ground_m);
+void RequireOverGround(const Place& eye, double ground_m);
 
 /// Returns the scene's own eye.
 [[nodiscard]] CameraStand StandOfScene(const SceneGround& ground);
@@ -108,11 +108,11 @@ void RequireOverGround(const GeodeticPosition& eye, double ground_m);
 /// Returns an eye at another place, in the frame of the scene. Throws InputError if the eye is
 /// below the ground (with several surfaces: below the lowest), or more than 500 km from the scene's
 /// place.
-[[nodiscard]] CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place);
+[[nodiscard]] CameraStand StandAt(const SceneGround& ground, const Place& place);
 
 /// Returns the height of a scene's ground above the ellipsoid [m] at a place: that of the highest
 /// surface, or 0 if there is none. Throws InputError more than 500 km from the scene's place.
-[[nodiscard]] double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place);
+[[nodiscard]] double GroundHeightUnder(const SceneGround& ground, const Place& place);
 
 /// Returns a camera with the lens of `camera` that takes these poses one after the other; without
 /// poses, the scene's camera.

@@ -100,7 +100,7 @@ class SurfacePatch {
   // triangles stays.
   void TakeFinerSlopes(const LocalFrame& frame) {
     for (int j = first_j_; j < first_j_ + side_; ++j) {
-      const double latitude = lattice_.PlaceOf(0, lattice_.RowOf(j, level_), 0.0).latitude_rad;
+      const double latitude = lattice_.PlaceOf(0, lattice_.RowOf(j, level_), 0.0).latitude_rad();
       const SampleSize size = SampleSizeAt(lattice_, latitude);
       for (int i = first_i_; i < first_i_ + side_; ++i) {
         if (!Has(i, j)) continue;

@@ -85,10 +85,10 @@ struct LandLattice {
   }
 
   /// Returns the position of a sample. Rows beyond a pole are moved to the pole.
-  [[nodiscard]] GeodeticPosition PlaceOf(int column, int row, double height_m) const {
+  [[nodiscard]] Place PlaceOf(int column, int row, double height_m) const {
     constexpr double kPole = 0.5 * std::numbers::pi;
-    return {std::clamp(north_rad - row * step_lat_rad, -kPole, kPole),
-            west_rad + column * step_lon_rad, height_m};
+    return PlaceFromRadians(std::clamp(north_rad - row * step_lat_rad, -kPole, kPole),
+                            west_rad + column * step_lon_rad, height_m);
   }
 
   /// Returns the lattice position of a place. Of the equivalent longitudes (modulo 2 pi), it takes
@@ -190,13 +190,13 @@ struct LandSource {
   VoidPolicy voids = VoidPolicy::kFill;
   /// Centre of the built-in range, which is used if there are no files. Without either there is no
   /// land.
-  std::optional<GeodeticPosition> range_centre;
+  std::optional<Place> range_centre;
   std::uint32_t range_seed = 0;
   /// A mesh (ReadMesh) in metres east, north and up of a place on the ellipsoid. It replaces all
   /// other sources.
   struct Mesh {
     std::filesystem::path file;
-    GeodeticPosition place;
+    Place place;
     UpAxis up = UpAxis::kZ;
   };
   std::optional<Mesh> mesh = std::nullopt;
@@ -242,7 +242,7 @@ class LandTiles {
     return extents_[static_cast<std::size_t>(tile)];
   }
   /// Returns the middle of all tiles, at height 0. There must be at least one tile.
-  [[nodiscard]] GeodeticPosition Middle() const {
+  [[nodiscard]] Place Middle() const {
     return lattice_.PlaceOf(lattice_.last_column / 2, lattice_.last_row / 2, 0.0);
   }
   /// Returns the indices of the tiles that touch a box, in ascending order. If the lattice closes

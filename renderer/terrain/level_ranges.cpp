@@ -117,16 +117,16 @@ class Drawing {
 
 }  // namespace
 
-LandEye::LandEye(const LandLattice& lattice, const GeodeticPosition& place, double height_above_m,
+LandEye::LandEye(const LandLattice& lattice, const Place& place, double height_above_m,
                  double farthest_m)
-    : at{lattice.At(place.latitude_rad, place.longitude_rad).column,
-         (lattice.north_rad - place.latitude_rad) / lattice.step_lat_rad},
-      size(SampleSizeAt(lattice, place.latitude_rad)),
+    : at{lattice.At(place.latitude_rad(), place.longitude_rad()).column,
+         (lattice.north_rad - place.latitude_rad()) / lattice.step_lat_rad},
+      size(SampleSizeAt(lattice, place.latitude_rad())),
       above_m(height_above_m),
       sight_m(farthest_m),
-      latitude_rad(place.latitude_rad),
-      sin_latitude(std::sin(place.latitude_rad)),
-      cos_latitude(std::cos(place.latitude_rad)),
+      latitude_rad(place.latitude_rad()),
+      sin_latitude(std::sin(place.latitude_rad())),
+      cos_latitude(std::cos(place.latitude_rad())),
       step_lon_rad(lattice.step_lon_rad),
       step_lat_rad(lattice.step_lat_rad) {
   const double southern_rad = lattice.north_rad - lattice.last_row * lattice.step_lat_rad;

@@ -53,8 +53,7 @@ struct LandEye {
   double nearest_equator_rad = 0.0;               // least distance of the lattice from the equator
 
   LandEye() = default;
-  LandEye(const LandLattice& lattice, const GeodeticPosition& place, double height_above_m,
-          double farthest_m);
+  LandEye(const LandLattice& lattice, const Place& place, double height_above_m, double farthest_m);
 
   /// Radius of the sphere on which distances are measured [m].
   [[nodiscard]] double radius_m() const { return size.row_m / step_lat_rad; }

@@ -212,10 +212,10 @@ struct VertexSpan {
 
 // Returns the vertices within half_width_m of a place, at the finest level that has no more than
 // most_samples per side; empty if the lattice has fewer than two there.
-std::optional<VertexSpan> SpanAround(const LandLattice& lattice, const GeodeticPosition& place,
+std::optional<VertexSpan> SpanAround(const LandLattice& lattice, const Place& place,
                                      double half_width_m, int most_samples) {
-  const SampleSize size = SampleSizeAt(lattice, place.latitude_rad);
-  const LatticePlace at = lattice.At(place.latitude_rad, place.longitude_rad);
+  const SampleSize size = SampleSizeAt(lattice, place.latitude_rad());
+  const LatticePlace at = lattice.At(place.latitude_rad(), place.longitude_rad());
   const double half_columns = half_width_m / size.column_m, half_rows = half_width_m / size.row_m;
   // The window is limited to the lattice.
   const auto within = [](double middle, double half, int last_sample) {
@@ -297,14 +297,14 @@ void SetRows(ElevationGrid& grid, const LandLattice& lattice, const RowsAround& 
 
 // Returns a grid over the part of a lattice around the earth that lies within half_width_m of a
 // place, if this part contains a pole of the lattice or crosses its first column; else nullopt.
-std::optional<GridOnLevel> GridOverSeam(const LandLattice& lattice, const GeodeticPosition& place,
+std::optional<GridOnLevel> GridOverSeam(const LandLattice& lattice, const Place& place,
                                         double half_width_m, int most_samples) {
   if (!lattice.ClosesAroundTheEarth()) return std::nullopt;
   const double reach_rad =
-      half_width_m * lattice.step_lat_rad / SampleSizeAt(lattice, place.latitude_rad).row_m;
-  const RowsAround rows(lattice, place.latitude_rad, reach_rad);
-  const double half = HalfTurn(place.latitude_rad, reach_rad) / lattice.step_lon_rad;
-  const double middle = lattice.At(place.latitude_rad, place.longitude_rad).column;
+      half_width_m * lattice.step_lat_rad / SampleSizeAt(lattice, place.latitude_rad()).row_m;
+  const RowsAround rows(lattice, place.latitude_rad(), reach_rad);
+  const double half = HalfTurn(place.latitude_rad(), reach_rad) / lattice.step_lon_rad;
+  const double middle = lattice.At(place.latitude_rad(), place.longitude_rad()).column;
   const bool is_whole = 2.0 * half >= lattice.last_column;
   const bool crosses = middle - half < 0.0 || middle + half > lattice.last_column;
   if (!(rows.north_rad > rows.south_rad) || !(is_whole || crosses)) return std::nullopt;
@@ -340,9 +340,8 @@ struct NeededSamples {
   int level;
 };
 
-std::optional<NeededSamples> SamplesAround(const LandLattice& lattice,
-                                           const GeodeticPosition& place, double half_width_m,
-                                           int most_samples) {
+std::optional<NeededSamples> SamplesAround(const LandLattice& lattice, const Place& place,
+                                           double half_width_m, int most_samples) {
   if (const auto over = GridOverSeam(lattice, place, half_width_m, most_samples))
     return NeededSamples{BoxAround(lattice, over->grid), over->level};
   const std::optional<VertexSpan> span = SpanAround(lattice, place, half_width_m, most_samples);
@@ -452,8 +451,7 @@ std::optional<double> LoadedHeights::HeightUnder(double latitude_rad, double lon
                            std::clamp(at.row - j, 0.0, 1.0));
 }
 
-std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& place,
-                                                        double half_width_m,
+std::optional<ElevationGrid> LoadedHeights::SampledGrid(const Place& place, double half_width_m,
                                                         int most_samples) const {
   if (tiles_->tiles().empty()) return std::nullopt;
   const LandLattice& lattice = tiles_->lattice();
@@ -473,10 +471,10 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   if (!span) return std::nullopt;
   const auto [level, i0, j0, i1, j1] = *span;
   const double step = 1 << level;
-  const GeodeticPosition corner = lattice.PlaceOf(i0 << level, j0 << level, 0.0);
+  const Place corner = lattice.PlaceOf(i0 << level, j0 << level, 0.0);
   ElevationGrid grid;
-  grid.west_rad = corner.longitude_rad;
-  grid.north_rad = corner.latitude_rad;
+  grid.west_rad = corner.longitude_rad();
+  grid.north_rad = corner.latitude_rad();
   grid.step_lon_rad = step * lattice.step_lon_rad;
   grid.step_lat_rad = step * lattice.step_lat_rad;
   grid.columns = i1 - i0 + 1;
@@ -486,7 +484,7 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
 }
 
 std::optional<ElevationGrid> ReadHeightsAround(const std::shared_ptr<const LandTiles>& tiles,
-                                               const GeodeticPosition& place, double half_width_m,
+                                               const Place& place, double half_width_m,
                                                int most_samples, std::vector<std::string>& notes) {
   if (tiles->tiles().empty()) return std::nullopt;
   const std::optional<NeededSamples> part =

@@ -28,7 +28,7 @@ namespace alpenglow::renderer {
 /// there is no land. For a mesh it returns the part nearest to the place (GridOverMesh). Called on
 /// other threads.
 using GroundSampler = std::function<std::optional<ElevationGrid>(
-    const GeodeticPosition& place, double half_width_m, int most_samples)>;
+    const Place& place, double half_width_m, int most_samples)>;
 
 /// Returns the sides of tile `index` on which the lattice has samples that belong to no tile,
 /// although another tile begins within one step.
@@ -80,8 +80,7 @@ class LoadedHeights {
   /// returned whole. If the lattice closes around the earth and the heights lie around a pole or on
   /// both sides of its first column, they are interpolated: rows begin at the pole, and the columns
   /// go once around it. NaN where nothing is loaded; empty if no land is near.
-  [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
-                                                         double half_width_m,
+  [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const Place& place, double half_width_m,
                                                          int most_samples) const;
 
  private:
@@ -94,8 +93,8 @@ class LoadedHeights {
 /// unreadable files in a folder, which are left out.
 /// @param notes  receives the notes on the tiles and the files that were left out.
 [[nodiscard]] std::optional<ElevationGrid> ReadHeightsAround(
-    const std::shared_ptr<const LandTiles>& tiles, const GeodeticPosition& place,
-    double half_width_m, int most_samples, std::vector<std::string>& notes);
+    const std::shared_ptr<const LandTiles>& tiles, const Place& place, double half_width_m,
+    int most_samples, std::vector<std::string>& notes);
 
 /// Size [m] of one column's and one row's step of a lattice at a latitude.
 struct SampleSize {

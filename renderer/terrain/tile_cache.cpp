@@ -164,16 +164,16 @@ bool TileCache::CanMake(const ChunkKey& key) const {
   });
 }
 
-std::vector<int> TileCache::TilesAround(const GeodeticPosition& place) const {
+std::vector<int> TileCache::TilesAround(const Place& place) const {
   if (tiles_->tiles().empty()) return {};  // the lattice has no steps
-  const LatticePlace at = tiles_->lattice().At(place.latitude_rad, place.longitude_rad);
+  const LatticePlace at = tiles_->lattice().At(place.latitude_rad(), place.longitude_rad());
   const int column = static_cast<int>(std::floor(at.column));
   const int row = static_cast<int>(std::floor(at.row));
   // These are the samples that LoadedHeights::HeightUnder reads.
   return tiles_->Touching({column - 1, row - 1, column + 2, row + 2});
 }
 
-bool TileCache::HasRead(const GeodeticPosition& place) const {
+bool TileCache::HasRead(const Place& place) const {
   const std::vector<int> around = TilesAround(place);
   return std::all_of(around.begin(), around.end(), [&](int index) {
     const auto tile = static_cast<std::size_t>(index);

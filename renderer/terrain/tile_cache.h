@@ -33,11 +33,9 @@ class TileCache {
   [[nodiscard]] bool CanMake(const ChunkKey& key) const;
 
   /// Returns whether a tile covers a place.
-  [[nodiscard]] bool Reaches(const GeodeticPosition& place) const {
-    return !TilesAround(place).empty();
-  }
+  [[nodiscard]] bool Reaches(const Place& place) const { return !TilesAround(place).empty(); }
   /// Returns whether every tile around a place has been read at some level, or cannot be read.
-  [[nodiscard]] bool HasRead(const GeodeticPosition& place) const;
+  [[nodiscard]] bool HasRead(const Place& place) const;
 
   /// Number of tiles that the eye needs, and number of those that are loaded.
   [[nodiscard]] int wanted() const { return wanted_; }
@@ -63,7 +61,7 @@ class TileCache {
   };
   static constexpr int kNotWanted = 64;
 
-  [[nodiscard]] std::vector<int> TilesAround(const GeodeticPosition& place) const;
+  [[nodiscard]] std::vector<int> TilesAround(const Place& place) const;
   [[nodiscard]] double Distance(const LandTile& tile, const LandEye& eye) const;
   [[nodiscard]] int LevelWanted(const LandTile& tile, const LandEye& eye) const;
   void Want(const LandEye& eye);

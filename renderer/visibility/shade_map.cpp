@@ -36,15 +36,15 @@ struct NodePlace {
 NodePlace ExactPlace(const ElevationGrid& grid, const LocalFrame& frame, double x_m, double y_m) {
   // Finds where the vertical through the node meets the ellipsoid, with two iterations.
   double z_m = 0.0;
-  GeodeticPosition at{};
+  Place at{};
   for (int look = 0; look < 2; ++look) {
     at = frame.GeodeticFromEnu({{x_m, y_m, z_m}});
     z_m -= at.height_m;
   }
   const double west = grid.west_rad + 0.5 * (grid.columns - 1) * grid.step_lon_rad;
-  const double east_of_middle = std::remainder(at.longitude_rad - west, 2.0 * kPi);
+  const double east_of_middle = std::remainder(at.longitude_rad() - west, 2.0 * kPi);
   return {east_of_middle / grid.step_lon_rad + 0.5 * (grid.columns - 1),
-          (grid.north_rad - at.latitude_rad) / grid.step_lat_rad, -z_m};
+          (grid.north_rad - at.latitude_rad()) / grid.step_lat_rad, -z_m};
 }
 
 /// The surface of the samples as triangles.

@@ -88,8 +88,8 @@ Scene SceneNamed(const std::string& name, double heading) {
   return scene;
 }
 
-std::vector<Minute> DayOf(const UtcTime& begin, const SceneRenderer& renderer,
-                          const GeodeticPosition& place, const std::array<int, 2>& hours) {
+std::vector<Minute> DayOf(const UtcTime& begin, const SceneRenderer& renderer, const Place& place,
+                          const std::array<int, 2>& hours) {
   RenderSettings settings;
   settings.width = 48;
   settings.height = 27;

@@ -12,10 +12,10 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr GeodeticPosition kPlace{47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDegree, 0.0};
+constexpr Place kPlace{47.0, 11.0, 0.0};
 
 std::shared_ptr<const GroundSite> NewSite() {
-  static const Medium kMedium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad);
+  static const Medium kMedium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad());
   static const SolvedAir kAir{SingleScattering<float>(kMedium), RefractedBeam(kMedium),
                               MultipleScattering(kMedium)};
   static const ElevationGrid kRange = ProceduralMountains(kPlace);

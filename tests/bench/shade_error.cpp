@@ -47,7 +47,7 @@ struct View {
   LocalFrame frame;
   Terrain terrain;
   glm::dvec3 right, up, forward;  // as in ViewBlock
-  GeodeticPosition place;
+  Place place;
   glm::dmat4 mesh_from_eye{1.0};
   std::vector<float> distance_m;  // starts with the lowest row
 };
@@ -62,7 +62,7 @@ glm::dvec3 InMesh(const View& view, const glm::dvec3& direction) {
 }
 
 View TheView() {
-  const GeodeticPosition centre = PlaceFromDegrees(46.5, 8.0, 0.0);
+  const Place centre{46.5, 8.0, 0.0};
   ElevationGrid grid = ProceduralMountains(centre);
   const BuiltInView seen = ProceduralMountainsView(centre, grid);
   const LocalFrame frame(kWgs84, centre), here(kWgs84, seen.eye);

@@ -78,8 +78,8 @@ TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown)
   EXPECT_TRUE(flight.standpoint().KnowsGround());
   EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6);
   EyePlacement far;
-  far.longitude_deg = tests::PlaceOfSample(kFar + 70.0, 0.0, 0.0).longitude_rad / kRadiansPerDegree;
-  flight.standpoint().Place(far);
+  far.longitude_deg = tests::PlaceOfSample(kFar + 70.0, 0.0, 0.0).longitude_deg;
+  flight.standpoint().MoveTo(far);
   EXPECT_FALSE(flight.standpoint().KnowsGround()) << "of another place";
   flight.WaitUntilReady(kSmall);
   EXPECT_TRUE(flight.standpoint().KnowsGround());
@@ -89,7 +89,7 @@ TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown)
 TEST_F(FlightsOverLand, WhereThereIsNoLandTheGroundIsKnownAtOnce) {
   for (const double latitude_deg : {10.0, 46.0}) {
     FlightSession flight = SmallFlight(SceneAt({300.0, true}));
-    flight.standpoint().Place({latitude_deg, {}, {}, {}, {}});
+    flight.standpoint().MoveTo({latitude_deg, {}, {}, {}, {}});
     flight.Advance({}, 1.0 / 60.0);
     EXPECT_TRUE(flight.standpoint().KnowsGround()) << latitude_deg;
     EXPECT_EQ(flight.eye().place.height_m, 300.0) << "over the ellipsoid";
@@ -102,7 +102,7 @@ TEST_F(FlightsOverLand, OfAPlaceWithoutTerrainThereIsANote) {
   flight.standpoint().GoTo("LSZS");
   EXPECT_THAT(flight.edits().PollNotes(), ElementsAre(HasSubstr("no terrain at Samedan")));
   EXPECT_NEAR(flight.eye().place.height_m, 2.0, 1e-9) << "on the plain, not 1707 m over it";
-  flight.standpoint().Place({46.65, 8.05, {}, {}, {}});
+  flight.standpoint().MoveTo({46.65, 8.05, {}, {}, {}});
   EXPECT_THAT(flight.edits().PollNotes(), IsEmpty()) << "on the tile";
 }
 
@@ -143,7 +143,7 @@ TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
   FlightSession flight(scene, ParseInstant("2026-06-21T11:30:00Z"), SettingsFor(scene));
   ShownFrames window(flight);
   EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6) << "before the first picture";
-  const GeodeticPosition start = flight.eye().place;
+  const Place start = flight.eye().place;
   EXPECT_LT(Greenest(window.Next()), kSky) << "no plain where land is to come";
   // The threads beside drawing need some frames.
   for (bool has_come = false; !has_come;) {
@@ -191,13 +191,13 @@ class FlightsOverTheRange : public FlightsOverLand {
 TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
   FlightSession flight = SmallFlight(RangeScene());
   flight.standpoint().GoTo("Tromso");
-  const GeodeticPosition tromso = PlaceNamed("Tromso").place;
+  const Place tromso = PlaceNamed("Tromso").place;
   EXPECT_EQ(flight.edits().scene().terrain.range_seed, RangeSeenFrom(tromso).range_seed);
   EXPECT_TRUE(flight.edits().land().ground().Reaches(tromso));
   EXPECT_FALSE(flight.standpoint().KnowsGround()) << "it is made beside drawing";
   EXPECT_NEAR(flight.eye().place.height_m, kRangeViewGround_m + 600.0, 1e-6)
       << "its ground is known before";
-  flight.standpoint().Place({46.58, 8.01, {}, {}, {}});
+  flight.standpoint().MoveTo({46.58, 8.01, {}, {}, {}});
   EXPECT_EQ(flight.edits().scene().terrain.range_seed, 0U)
       << "on the range that the flight began over";
   EXPECT_EQ(flight.edits().scene().terrain.centre, RangeScene().terrain.centre);
@@ -216,7 +216,7 @@ TEST_F(FlightsOverTheRange, AnEyeStandsAtItsHeightBeforeTheRangeIsThere) {
 
 // Land that has grown since, or that of another model.
 TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
-  const GeodeticPosition place = tests::PlaceOfSample(120.0, 200.0, 100.0);
+  const Place place = tests::PlaceOfSample(120.0, 200.0, 100.0);
   const CameraPath low({{0.0, {place}}, {1.0, {place, 0.5}}});
   {
     FlightSession flight = SmallFlight(Mountains());
@@ -424,10 +424,10 @@ TEST_F(NumberedNames, AFlightThatIsBeingRecordedHasItsNumber) {
 // --- times of frames ---
 
 TEST(FrameTimes, TheFlightIsSteadyLevelAndTimeRunsSixtyfold) {
-  const CameraPose start{PlaceFromDegrees(46.0, 8.0, 3000.0), 0.7};
+  const CameraPose start{Place{46.0, 8.0, 3000.0}, 0.7};
   const UtcTime begin = ParseInstant("2026-06-21T18:00:00Z");
   const auto at = [&](double seconds) { return BenchmarkFlight(start, begin, seconds); };
-  EXPECT_NEAR(at(0.0).eye.place.latitude_rad, start.place.latitude_rad, 1e-12);
+  EXPECT_NEAR(at(0.0).eye.place.latitude_rad(), start.place.latitude_rad(), 1e-12);
   for (const double seconds : {0.0, 3.0, 40.0, 600.0}) {
     const ReplayFrame a = at(seconds), b = at(seconds + 0.1);
     const glm::dvec3 step =

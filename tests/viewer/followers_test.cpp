@@ -248,7 +248,7 @@ TEST_F(AirFollowerOnGpu, AMediumThatCannotBeShownIsRefusedAtOnce) {
 
 // --- light on the ground ---
 
-const GeodeticPosition kFollowedPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
+const Place kFollowedPlace{46.5, 8.0, 0.0};
 constexpr GroundExtent kSmall{8e3, 128};
 
 DistantLight SunAt(double elevation_deg, double azimuth_rad) {
@@ -260,23 +260,23 @@ DistantLight SunAt(double elevation_deg, double azimuth_rad) {
   return SunlightOf(sun, MediumPreset("bruneton2017"));
 }
 
-GroundFollower::View ViewFrom(const GeodeticPosition& place, double elevation_deg) {
+GroundFollower::View ViewFrom(const Place& place, double elevation_deg) {
   GroundFollower::View view{place, ParseInstant("2026-06-21T12:00:00Z"), SunAt(elevation_deg, 4.0)};
   view.eye.height_m = 1500.0;
   return view;
 }
 
 /// Returns every `stride`-th sample of the built-in range around a place.
-std::optional<ElevationGrid> RangeAround(const GeodeticPosition& place, double half_width_m,
+std::optional<ElevationGrid> RangeAround(const Place& place, double half_width_m,
                                          int most_samples) {
   static const ElevationGrid range = ProceduralMountains(kFollowedPlace);
-  if (!range.Covers(place.latitude_rad, place.longitude_rad)) return std::nullopt;
+  if (!range.Covers(place.latitude_rad(), place.longitude_rad())) return std::nullopt;
   ElevationGrid around;
   around.columns = around.rows = most_samples;
   around.step_lat_rad = 2.0 * half_width_m / 6.37e6 / (most_samples - 1);
-  around.step_lon_rad = around.step_lat_rad / std::cos(place.latitude_rad);
-  around.north_rad = place.latitude_rad + half_width_m / 6.37e6;
-  around.west_rad = place.longitude_rad - 0.5 * (most_samples - 1) * around.step_lon_rad;
+  around.step_lon_rad = around.step_lat_rad / std::cos(place.latitude_rad());
+  around.north_rad = place.latitude_rad() + half_width_m / 6.37e6;
+  around.west_rad = place.longitude_rad() - 0.5 * (most_samples - 1) * around.step_lon_rad;
   for (int row = 0; row < around.rows; ++row) {
     for (int column = 0; column < around.columns; ++column) {
       const auto height =
@@ -290,7 +290,7 @@ std::optional<ElevationGrid> RangeAround(const GeodeticPosition& place, double h
 /// Solved once for all of these tests.
 const std::shared_ptr<const SolvedAir>& Air() {
   static const auto air = std::make_shared<const SolvedAir>(
-      OnOsculatingSphere(MediumPreset("bruneton2017"), kFollowedPlace.latitude_rad),
+      OnOsculatingSphere(MediumPreset("bruneton2017"), kFollowedPlace.latitude_rad()),
       AirSolution::kDraft);
   return air;
 }
@@ -300,8 +300,7 @@ TEST(GroundFollower, WithoutLandThereIsNoLight) {
   static_cast<void>(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr);
   EXPECT_FALSE(follower.Light());
-  follower.SetGround(
-      [](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> { return {}; });
+  follower.SetGround([](const Place&, double, int) -> std::optional<ElevationGrid> { return {}; });
   static_cast<void>(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr) << "no land around here";
 }
@@ -328,7 +327,7 @@ TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   EXPECT_GT(follower.making_s(), 0.0);
   const std::optional<LightOfVertices> light = follower.Light();
   ASSERT_TRUE(light);
-  GeodeticPosition foot = kFollowedPlace;
+  Place foot = kFollowedPlace;
   LandVertex vertex{};
   vertex.normal = {0.0F, 0.0F, 1.0F};
   vertex.position_m = {0.0F, 0.0F,
@@ -345,7 +344,7 @@ TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
   EXPECT_EQ(kSmall.HalfWidthUnder(400e3), 32e3) << "no further";
   std::vector<double> widths_m;
   GroundFollower follower({}, nullptr, {8e3, 32});
-  follower.SetGround([&](const GeodeticPosition& place, double half_width_m, int most_samples) {
+  follower.SetGround([&](const Place& place, double half_width_m, int most_samples) {
     widths_m.push_back(half_width_m);
     return RangeAround(place, half_width_m, most_samples);
   });
@@ -387,31 +386,30 @@ TEST(GroundFollower, ARunningSunIsMetWhereItWillStand) {
 
 // --- shade of the terrain ---
 
-const GeodeticPosition kShadePlace = PlaceFromDegrees(46.5, 8.0, 0.0);
+const Place kShadePlace{46.5, 8.0, 0.0};
 constexpr int kShadeUnit = 3;
 
-GeodeticPosition Eye(double degrees_north) {
-  return {kShadePlace.latitude_rad + degrees_north * kRadiansPerDegree, kShadePlace.longitude_rad,
-          900.0};
+Place Eye(double degrees_north) {
+  return {kShadePlace.latitude_deg + degrees_north, kShadePlace.longitude_deg, 900.0};
 }
 
 DistantLight SunAtDegrees(double elevation) { return SunAt(elevation, 2.0); }
 
 /// A mountain at the place, whoever asks from near; counts how often it was asked.
 GroundSampler Mountain(std::atomic<int>& asked) {
-  return [&asked](const GeodeticPosition& place, double half_width_m, int most_samples) {
+  return [&asked](const Place& place, double half_width_m, int most_samples) {
     ++asked;
     ElevationGrid grid;
     grid.columns = grid.rows = most_samples;
     const double half_rad = half_width_m / 6.37e6;
     grid.step_lat_rad = 2.0 * half_rad / (most_samples - 1);
-    grid.step_lon_rad = grid.step_lat_rad / std::cos(place.latitude_rad);
-    grid.north_rad = place.latitude_rad + half_rad;
-    grid.west_rad = place.longitude_rad - half_rad / std::cos(place.latitude_rad);
+    grid.step_lon_rad = grid.step_lat_rad / std::cos(place.latitude_rad());
+    grid.north_rad = place.latitude_rad() + half_rad;
+    grid.west_rad = place.longitude_rad() - half_rad / std::cos(place.latitude_rad());
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {
-        const double y = (grid.LatitudeOfRow(row) - kShadePlace.latitude_rad) * 6.37e6;
-        const double x = (grid.LongitudeOfColumn(column) - kShadePlace.longitude_rad) * 4.38e6;
+        const double y = (grid.LatitudeOfRow(row) - kShadePlace.latitude_rad()) * 6.37e6;
+        const double x = (grid.LongitudeOfColumn(column) - kShadePlace.longitude_rad()) * 4.38e6;
         grid.height_m.push_back(static_cast<float>(2000.0 * std::exp(-1e-7 * (x * x + y * y))));
       }
     }
@@ -429,9 +427,8 @@ TEST_F(ShadeFollowerTest, WithoutGroundThereIsNoShade) {
   ShadeFollower follower(kWgs84);
   follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
   EXPECT_FALSE(follower.shade().Shades());
-  follower.SetGround([](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> {
-    return std::nullopt;
-  });
+  follower.SetGround(
+      [](const Place&, double, int) -> std::optional<ElevationGrid> { return std::nullopt; });
   follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
   EXPECT_FALSE(follower.shade().Shades());
 }

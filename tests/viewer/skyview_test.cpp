@@ -573,12 +573,12 @@ TEST_F(SkyviewLand, ALakeBetweenMountainsMirrorsThemAsInSkyseries) {
 // Hard case 17.
 TEST_F(SkyviewLand, OverBothPolesAndTheDateLineItShowsTheLandOfTheRenderer) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-  struct Place {
+  struct PolarView {
     double hemisphere, from_pole, longitude;
     const char* time;
   };
   for (const auto& [hemisphere, from_pole, longitude, time] :
-       {Place{1.0, 0.02, 179.99, "2026-06-21T09:00:00Z"},
+       {PolarView{1.0, 0.02, 179.99, "2026-06-21T09:00:00Z"},
         {-1.0, 0.0, 0.0, "2026-12-21T09:00:00Z"}}) {
     tests::WritePolarModel(folder_ / "pole.tif", hemisphere);
     WriteText(folder_ / "pole.toml",

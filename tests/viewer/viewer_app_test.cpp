@@ -357,9 +357,9 @@ TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
 }
 
 TEST_F(ViewerAppTest, APlaceThatIsAskedForMovesTheEye) {
-  Commands().Place({47.25, 9.5, 2500.0, {}, {}});
-  EXPECT_NEAR(flight_->eye().place.latitude_rad, 47.25 * kRadiansPerDegree, 1e-12);
-  EXPECT_NEAR(flight_->eye().place.longitude_rad, 9.5 * kRadiansPerDegree, 1e-12);
+  Commands().MoveTo({47.25, 9.5, 2500.0, {}, {}});
+  EXPECT_NEAR(flight_->eye().place.latitude_rad(), 47.25 * kRadiansPerDegree, 1e-12);
+  EXPECT_NEAR(flight_->eye().place.longitude_rad(), 9.5 * kRadiansPerDegree, 1e-12);
   EXPECT_NEAR(flight_->eye().place.height_m, 2500.0, 1e-6);
   EXPECT_TRUE(Messages().empty());
 }

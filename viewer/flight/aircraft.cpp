@@ -19,17 +19,17 @@ constexpr double kSeaDensity_kg_per_m3 = 1.225;
 
 /// Position and air around the aircraft.
 struct Surroundings {
-  GeodeticPosition place;
+  Place place;
   glm::dvec3 up, north, east;  // at the ellipsoid, earth-fixed
   double gravity_m_per_s2, radius_m;
   StandardAir air;
 };
 
 Surroundings SurroundingsAt(const Ellipsoid& ellipsoid, const Point<Ecef>& point) {
-  const GeodeticPosition place = GeodeticFromEcef(ellipsoid, point);
-  const double sin_lat = std::sin(place.latitude_rad), cos_lat = std::cos(place.latitude_rad);
-  const double sin_lon = std::sin(place.longitude_rad), cos_lon = std::cos(place.longitude_rad);
-  const double radius_m = OsculatingRadius(ellipsoid, place.latitude_rad) + place.height_m;
+  const Place place = GeodeticFromEcef(ellipsoid, point);
+  const double sin_lat = std::sin(place.latitude_rad()), cos_lat = std::cos(place.latitude_rad());
+  const double sin_lon = std::sin(place.longitude_rad()), cos_lon = std::cos(place.longitude_rad());
+  const double radius_m = OsculatingRadius(ellipsoid, place.latitude_rad()) + place.height_m;
   const double share = 1.0 - place.height_m / radius_m;  // of the distance from the centre
   return {place,
           {cos_lat * cos_lon, cos_lat * sin_lon, sin_lat},
@@ -298,7 +298,7 @@ AircraftState OnGround(const AircraftState& state, const Ellipsoid& ellipsoid,
                     glm::dot(state.up.xyz, normal) < kUpright ||
                     glm::dot(here.up, normal) < kUpright;
   AircraftState next = state;
-  GeodeticPosition lifted = here.place;
+  Place lifted = here.place;
   lifted.height_m = ground_m + kWheels_m;
   next.place = EcefFromGeodetic(ellipsoid, lifted);
   next.velocity.xyz = Braked(state, normal, hard, brake, step_s);
@@ -333,8 +333,8 @@ double CruiseSpeed(const AircraftKind& kind, double height_m) {
                   kind.critical_mach * StandardAirAt(height_m).sound_m_per_s);
 }
 
-AircraftState LevelFlight(const AircraftKind& kind, const Ellipsoid& ellipsoid,
-                          const GeodeticPosition& place, double heading_rad) {
+AircraftState LevelFlight(const AircraftKind& kind, const Ellipsoid& ellipsoid, const Place& place,
+                          double heading_rad) {
   AircraftState state;
   state.place = EcefFromGeodetic(ellipsoid, place);
   const Surroundings here = SurroundingsAt(ellipsoid, state.place);

@@ -122,7 +122,7 @@ struct AircraftReadout {
 /// Returns straight and level flight at a place and heading at CruiseSpeed, with the throttle that
 /// maintains it, or full throttle if that is insufficient.
 [[nodiscard]] AircraftState LevelFlight(const AircraftKind& kind, const Ellipsoid& ellipsoid,
-                                        const GeodeticPosition& place, double heading_rad);
+                                        const Place& place, double heading_rad);
 
 /// Returns the state after a short step. Steps of more than 1/60 s are inaccurate.
 [[nodiscard]] AircraftState Stepped(const AircraftState& state, const AircraftKind& kind,

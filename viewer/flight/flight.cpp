@@ -27,14 +27,13 @@ const char* NameOf(FlightMode mode) {
 }
 
 CameraPose Placed(const CameraPose& eye, const EyePlacement& placement) {
-  const auto degrees = [](double radians) { return radians / kRadiansPerDegree; };
   CameraPose placed = eye;
   if (placement.latitude_deg || placement.longitude_deg || placement.height_m) {
-    placed.place = PlaceFromDegrees(
-        placement.latitude_deg.value_or(degrees(eye.place.latitude_rad)),
-        placement.longitude_deg.value_or(degrees(eye.place.longitude_rad)),
-        placement.height_m ? RequireInRange(*placement.height_m, -12000.0, 1e9, "--altitude")
-                           : eye.place.height_m);
+    placed.place = CheckedPlace(
+        {placement.latitude_deg.value_or(eye.place.latitude_deg),
+         placement.longitude_deg.value_or(eye.place.longitude_deg),
+         placement.height_m ? RequireInRange(*placement.height_m, -12000.0, 1e9, "--altitude")
+                            : eye.place.height_m});
   }
   if (placement.heading_deg) {
     placed.heading_rad =
@@ -76,7 +75,7 @@ CameraPose Steer(const CameraPose& eye, const Steering& steering, const Ellipsoi
                                     glm::dvec3(0.0, 0.0, steering.up));
   if (glm::length(step) == 0.0) return moved;
   const LocalFrame here(ellipsoid, moved.place);
-  const GeodeticPosition there = here.GeodeticFromEnu(Point<Enu>{step});
+  const Place there = here.GeodeticFromEnu(Point<Enu>{step});
   // North changes direction along the path; the direction of flight does not.
   const Vector<Ecef> ahead = here.EcefFromEnu(
       Vector<Enu>{{std::sin(moved.heading_rad), std::cos(moved.heading_rad), 0.0}});

@@ -49,17 +49,17 @@ const EventRow& RowOf(SkyEvent event) { return kEventRows[static_cast<std::size_
 /// Returns whether the sun of the day reaches the elevations of the event, with a margin of 2
 /// degrees: its declination changes by 0.4 degrees a day. Most days of a polar night need no
 /// search.
-bool CanHappen(SunEvent event, const GeodeticPosition& place, const UtcTime& day) {
+bool CanHappen(SunEvent event, const Place& place, const UtcTime& day) {
   constexpr double kMargin_rad = 2.0 * kRadiansPerDegree, kTwilight_rad = -6.0 * kRadiansPerDegree;
   if (event == SunEvent::kNoon) return true;
   const bool at_horizon = event == SunEvent::kSunrise || event == SunEvent::kSunset;
   const double wanted_rad =
-      at_horizon ? SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad))
+      at_horizon ? SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad()))
                        .true_elevation_rad
                  : kTwilight_rad;
   const double declination_rad = std::asin(SunAt(place, day).direction.xyz.z);
-  const double highest_rad = 0.5 * kPi - std::abs(place.latitude_rad - declination_rad);
-  const double lowest_rad = std::abs(place.latitude_rad + declination_rad) - 0.5 * kPi;
+  const double highest_rad = 0.5 * kPi - std::abs(place.latitude_rad() - declination_rad);
+  const double lowest_rad = std::abs(place.latitude_rad() + declination_rad) - 0.5 * kPi;
   return highest_rad > wanted_rad - kMargin_rad && lowest_rad < wanted_rad + kMargin_rad;
 }
 
@@ -84,8 +84,7 @@ double SteppedTimeRate(double rate, int step) {
 
 const char* NameOf(SkyEvent event) { return RowOf(event).name; }
 
-std::optional<UtcTime> NextEvent(SkyEvent event, const GeodeticPosition& place,
-                                 const UtcTime& after) {
+std::optional<UtcTime> NextEvent(SkyEvent event, const Place& place, const UtcTime& after) {
   const auto& of = RowOf(event).of;
   if (const auto* moon = std::get_if<MoonEvent>(&of)) return NextMoonEvent(*moon, place, after);
   constexpr int kDays = 366;
@@ -116,14 +115,13 @@ void SceneClock::Set(const UtcTime& instant) {
   now_ = early ? FirstInstant() : late ? LastInstant() : instant;
 }
 
-bool SceneClock::JumpToNext(SkyEvent event, const GeodeticPosition& place) {
+bool SceneClock::JumpToNext(SkyEvent event, const Place& place) {
   const std::optional<UtcTime> next = NextEvent(event, place, now_);
   if (next) Set(*next);
   return next.has_value();
 }
 
-void SceneClock::Type(const std::string& text, const GeodeticPosition& place,
-                      const std::string& zone) {
+void SceneClock::Type(const std::string& text, const Place& place, const std::string& zone) {
   Set(InstantFromText(text, {place, zone, now_}));
 }
 

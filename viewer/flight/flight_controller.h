@@ -32,7 +32,7 @@ inline constexpr std::array<SkyEvent, 7> kSkyEvents{
 /// Returns the next occurrence of an event at a place, after an instant and for the sun more than a
 /// second after it. Instants are those of FindSunEvent and NextMoonEvent. Returns nullopt if the
 /// event does not occur within 366 days (sun) or 30 days (moon).
-[[nodiscard]] std::optional<UtcTime> NextEvent(SkyEvent event, const GeodeticPosition& place,
+[[nodiscard]] std::optional<UtcTime> NextEvent(SkyEvent event, const Place& place,
                                                const UtcTime& after);
 
 /// Clock of the scene. Its range is the years 1900 to 2100; it stops at their ends.
@@ -57,11 +57,11 @@ class SceneClock {
   void Set(const UtcTime& instant);
   /// Jumps to the next occurrence of the event. Returns false and changes nothing if NextEvent
   /// finds none.
-  bool JumpToNext(SkyEvent event, const GeodeticPosition& place);
+  bool JumpToNext(SkyEvent event, const Place& place);
   /// Sets the time from a text, as InstantFromText (time_text.h). The day is that
   /// of this clock in the zone, but "today" and "now" refer to the clock of the computer. Throws
   /// InputError.
-  void Type(const std::string& text, const GeodeticPosition& place, const std::string& zone);
+  void Type(const std::string& text, const Place& place, const std::string& zone);
 
  private:
   UtcTime now_;

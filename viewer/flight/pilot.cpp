@@ -142,8 +142,7 @@ Autopilot::Flown Autopilot::Fly(const AircraftState& state, const AircraftKind& 
   return flown;
 }
 
-void PilotedAircraft::Begin(GeodeticPosition place, double heading_rad,
-                            const GroundHeight& ground) {
+void PilotedAircraft::Begin(Place place, double heading_rad, const GroundHeight& ground) {
   const double ground_m = ground(place);
   const bool stands = place.height_m < ground_m + kOnGround_m;
   if (stands) place.height_m = ground_m + kStandingEye_m;
@@ -160,7 +159,7 @@ void PilotedAircraft::Begin(GeodeticPosition place, double heading_rad,
 
 void PilotedAircraft::LeaveTheGround(const GroundHeight& ground) {
   constexpr double kDeep_m = 30.0, kOver_m = 150.0;
-  GeodeticPosition place = GeodeticFromEcef(ellipsoid_, state_.place);
+  Place place = GeodeticFromEcef(ellipsoid_, state_.place);
   const double ground_m = ground(place);
   if (place.height_m > ground_m - kDeep_m) return;
   place.height_m = ground_m + kOver_m;
@@ -185,7 +184,7 @@ void PilotedAircraft::Fly(const Stick& stick, double seconds, const GroundHeight
 
 void PilotedAircraft::Lift(double height_m) {
   const AircraftReadout now = ReadoutOf(state_, kind_, ellipsoid_);
-  GeodeticPosition place = GeodeticFromEcef(ellipsoid_, state_.place);
+  Place place = GeodeticFromEcef(ellipsoid_, state_.place);
   place.height_m += height_m;
   const bool flies = now.speed_m_per_s > 1.3 * StallSpeed(kind_, place.height_m);
   if (flies) {
@@ -253,7 +252,7 @@ void Pilot::PutAt(const CameraPose& eye, const GroundHeight& ground) {
 }
 
 void Pilot::Advance(const PilotControls& controls, double seconds, const GroundHeight& ground) {
-  const GeodeticPosition before = eye_.place;
+  const Place before = eye_.place;
   LookAround(controls);
   if (mode_ == FlightMode::kFree) {
     eye_ = FreeFlight(eye_, controls.camera, ellipsoid_, ground, free_factor_, seconds);
@@ -266,7 +265,7 @@ void Pilot::Advance(const PilotControls& controls, double seconds, const GroundH
   if (seconds > 0.0) RecordSpeed(before, seconds);
 }
 
-void Pilot::RecordSpeed(const GeodeticPosition& before, double seconds) {
+void Pilot::RecordSpeed(const Place& before, double seconds) {
   constexpr double kStands_m_per_s = 0.5;
   const LocalFrame frame(ellipsoid_, before);
   const glm::dvec3 way = frame.EnuFromGeodetic(eye_.place).xyz;

@@ -82,7 +82,7 @@ class PilotedAircraft {
   explicit PilotedAircraft(const Ellipsoid& ellipsoid) : ellipsoid_(ellipsoid) {}
 
   /// Starts a level flight at a place; less than 15 m above the ground, the aircraft stands on it.
-  void Begin(GeodeticPosition place, double heading_rad, const GroundHeight& ground);
+  void Begin(Place place, double heading_rad, const GroundHeight& ground);
   /// Flies for a number of seconds. If the ground is more than 30 m above the aircraft because its
   /// terrain was loaded, the flight continues 150 m above the ground.
   void Fly(const Stick& stick, double seconds, const GroundHeight& ground);
@@ -214,7 +214,7 @@ class Pilot {
   [[nodiscard]] FlightReadout Readout(const GroundHeight& ground) const;
 
  private:
-  void RecordSpeed(const GeodeticPosition& before, double seconds);
+  void RecordSpeed(const Place& before, double seconds);
   void LookAround(const PilotControls& controls);
   void Show(const GroundHeight& ground);
 

@@ -86,10 +86,10 @@ std::array<float, 3> DisplayCode(const std::array<double, 3>& rgb, double ev100)
 bool LooksTheSame(const DayStripRequest& a, const DayStripRequest& b) {
   constexpr double kAngle_rad = 0.5 * kRadiansPerDegree, kTime_s = 1.0;
   constexpr double kHeight_m = 200.0, kShareOfHeight = 0.1;
-  const double apart_rad =
-      std::max(std::abs(a.place.latitude_rad - b.place.latitude_rad),
-               std::abs(std::remainder(a.place.longitude_rad - b.place.longitude_rad, 2.0 * kPi)) *
-                   std::cos(a.place.latitude_rad));
+  const double apart_rad = std::max(
+      std::abs(a.place.latitude_rad() - b.place.latitude_rad()),
+      std::abs(std::remainder(a.place.longitude_rad() - b.place.longitude_rad(), 2.0 * kPi)) *
+          std::cos(a.place.latitude_rad()));
   return a.multiple_scattering == b.multiple_scattering && a.columns == b.columns &&
          std::abs(SecondsBetween(a.begin, b.begin)) < kTime_s && apart_rad < kAngle_rad &&
          std::abs(a.place.height_m - b.place.height_m) <

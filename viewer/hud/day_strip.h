@@ -22,7 +22,7 @@ namespace alpenglow::viewer {
 
 struct DayStripRequest {
   std::shared_ptr<const MultipleScattering> multiple_scattering;  // not null
-  GeodeticPosition place;
+  Place place;
   UtcTime begin;     // start of the 24 hours shown
   int columns = 96;  // >= 2
 };

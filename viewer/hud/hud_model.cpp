@@ -52,9 +52,9 @@ constexpr double kLargeNumber = 1e5;
 constexpr double kFastNumber = 1e4;
 
 // Angles that round to 0 or 180 degrees have one text on both sides.
-std::string CoordinateText(double angle_rad, char positive, char negative) {
+std::string CoordinateText(double angle_deg, char positive, char negative) {
   constexpr double kSteps = 1e4;  // per degree
-  const double degrees = std::round(kSteps * angle_rad / kRadiansPerDegree) / kSteps;
+  const double degrees = std::round(kSteps * angle_deg) / kSteps;
   return fmt::format("{:.4f}° {}", std::abs(degrees),
                      degrees < 0.0 && degrees > -180.0 ? negative : positive);
 }
@@ -75,8 +75,8 @@ Quantity Scaled(double value_m, double unit_m, const char* unit, double many, do
 
 std::string Joined(const Quantity& quantity) { return quantity.number + " " + quantity.unit; }
 
-std::string LatitudeText(double latitude_rad) { return CoordinateText(latitude_rad, 'N', 'S'); }
-std::string LongitudeText(double longitude_rad) { return CoordinateText(longitude_rad, 'E', 'W'); }
+std::string LatitudeText(double latitude_deg) { return CoordinateText(latitude_deg, 'N', 'S'); }
+std::string LongitudeText(double longitude_deg) { return CoordinateText(longitude_deg, 'E', 'W'); }
 
 std::string HeadingText(double heading_rad) {
   const double turns = heading_rad / (2.0 * kPi);

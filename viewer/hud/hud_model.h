@@ -118,8 +118,8 @@ using HudRow = std::vector<std::string>;
 struct HudModel {
   HudFlight flight;
   AutopilotTargets autopilot;
-  double latitude_rad = 0.0;
-  double longitude_rad = 0.0;
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
   HudTime time;
   HudSky sky;
   HudExposure exposure;
@@ -140,8 +140,8 @@ struct HudPreferences {
 };
 
 /// Return "46.5000° N", "8.0000° W".
-[[nodiscard]] std::string LatitudeText(double latitude_rad);
-[[nodiscard]] std::string LongitudeText(double longitude_rad);
+[[nodiscard]] std::string LatitudeText(double latitude_deg);
+[[nodiscard]] std::string LongitudeText(double longitude_deg);
 
 /// Returns "007": integer degrees in [0, 360).
 [[nodiscard]] std::string HeadingText(double heading_rad);

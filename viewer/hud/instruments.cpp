@@ -79,7 +79,7 @@ Lines TimeLines(const HudModel& model) {
 
 Lines PlaceLines(const HudModel& model) {
   const HudUnits units = model.units;
-  return {LatitudeText(model.latitude_rad) + "  " + LongitudeText(model.longitude_rad),
+  return {LatitudeText(model.latitude_deg) + "  " + LongitudeText(model.longitude_deg),
           "over the sea " + Joined(HeightText(model.flight.height_m, units)),
           "over ground " + Joined(HeightText(model.flight.above_ground_m, units)),
           "ground speed " + Joined(SpeedText(model.flight.ground_speed_m_per_s, units))};
@@ -193,7 +193,7 @@ CornerTexts CornerTextsOf(const HudModel& model) {
 CornerTexts ShortCornerTextsOf(const HudModel& model) {
   return {ModeLines(model),
           {model.time.local, RateText(model.time.rate, model.time.paused)},
-          {LatitudeText(model.latitude_rad), LongitudeText(model.longitude_rad)},
+          {LatitudeText(model.latitude_deg), LongitudeText(model.longitude_deg)},
           {ExposureText(model.exposure), FrameText(model.speed)}};
 }
 

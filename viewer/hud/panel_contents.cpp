@@ -89,7 +89,7 @@ void TimeControls(const PanelChange& change, PanelTyping& typing) {
 }
 
 std::array<double, 3> PlaceOf(const HudModel& model) {
-  return {Degrees(model.latitude_rad), Degrees(model.longitude_rad), model.flight.height_m};
+  return {model.latitude_deg, model.longitude_deg, model.flight.height_m};
 }
 
 void PlaceControls(const PanelChange& change, PanelTyping& typing) {
@@ -100,8 +100,8 @@ void PlaceControls(const PanelChange& change, PanelTyping& typing) {
   typing.is_place_typed |= ImGui::InputDouble("height", &height, 0.0, 0.0, "%.0f m");
   if (!ImGui::Button("go there")) return;
   typing.is_place_typed = false;
-  change.flight.Place({std::clamp(latitude, -90.0, 90.0), std::clamp(longitude, -180.0, 360.0),
-                       height, std::nullopt, std::nullopt});
+  change.flight.MoveTo({std::clamp(latitude, -90.0, 90.0), std::clamp(longitude, -180.0, 360.0),
+                        height, std::nullopt, std::nullopt});
 }
 
 /// A value that can be held: its name, slider units per SI unit, and range.

@@ -56,7 +56,7 @@ class FlightCommands {
   virtual void Use(const AirChoice& choice) = 0;
   virtual void ToggleLandingLight() = 0;
 
-  virtual void Place(const EyePlacement& placement) = 0;
+  virtual void MoveTo(const EyePlacement& placement) = 0;
   /// Goes to a place of the list (places.h).
   virtual void GoTo(const std::string& place) = 0;
   /// Sets the time from a text (SceneClock::Type).

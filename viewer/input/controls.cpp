@@ -74,8 +74,8 @@ void Controls::NextMouseMode() {
 void Controls::MoveMouse(const InputFrame& input, bool taken, PilotControls& pilot) {
   const auto& [width, height] = input.size;
   if (!input.events.pointer || width <= 0 || height <= 0) return;
-  const Place place{input.events.pointer->right / width, input.events.pointer->down / height};
-  const std::optional<Place> before = std::exchange(mouse_, place);
+  const WindowPoint place{input.events.pointer->right / width, input.events.pointer->down / height};
+  const std::optional<WindowPoint> before = std::exchange(mouse_, place);
   if (!before || taken) return;
   const double moved_right = place.right - before->right;
   const double moved_down =

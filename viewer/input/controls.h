@@ -81,7 +81,7 @@ class Controls {
                                  const TakenByPanels& taken = {});
 
  private:
-  struct Place {
+  struct WindowPoint {
     double right, down;  // fractions of the window
   };
 
@@ -99,7 +99,7 @@ class Controls {
   ControlSettings settings_;
   MouseMode mouse_mode_ = MouseMode::kCursor;
   std::map<int, const Action*> held_;  // key, and its action since it went down
-  std::optional<Place> mouse_;
+  std::optional<WindowPoint> mouse_;
   double wheel_ = 0.0;  // steps that have not acted
   Steering camera_;
   Stick stick_;

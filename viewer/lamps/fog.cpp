@@ -124,7 +124,7 @@ void SceneFog::Follow(const std::shared_ptr<const SolvedAir>& air, const CameraP
 
 void SceneFog::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
                               const DistantLight& light) {
-  if (air_ != air) BeginIn(air, eye.place.latitude_rad);
+  if (air_ != air) BeginIn(air, eye.place.latitude_rad());
   maps_->WaitUntilReady(FogViewOf(eye, light));
   maps_->Update();
   painter_.Upload(*maps_->value());

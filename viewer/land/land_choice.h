@@ -21,7 +21,7 @@ struct LandChoiceOrder {
   const ChunkTree* tree;
   const ChunkSet* set;
   Ellipsoid ellipsoid;
-  GeodeticPosition place;
+  Place place;
   LandEye eye;
   LandView view;
   std::vector<LevelRange> ranges;

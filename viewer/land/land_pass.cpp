@@ -91,7 +91,7 @@ glm::vec4 Padded(const glm::dvec3& v) { return {glm::vec3(v), 0.0F}; }
 
 }  // namespace
 
-LandBlock LandBlockOf(const LocalFrame& anchor, const GeodeticPosition& eye, double new_light) {
+LandBlock LandBlockOf(const LocalFrame& anchor, const Place& eye, double new_light) {
   const FrameTransform from_eye(anchor, LocalFrame(anchor.ellipsoid(), eye));
   const glm::vec3 high(from_eye.origin_m());
   std::array<GLint, 4> viewport{};

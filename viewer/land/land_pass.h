@@ -109,8 +109,7 @@ static_assert(sizeof(LandBlock) == (12 + LandBlock::kMostLevels) * sizeof(glm::v
 /// of the viewport.
 /// @param anchor     frame of the vertices.
 /// @param new_light  weight of the new light.
-[[nodiscard]] LandBlock LandBlockOf(const LocalFrame& anchor, const GeodeticPosition& eye,
-                                    double new_light);
+[[nodiscard]] LandBlock LandBlockOf(const LocalFrame& anchor, const Place& eye, double new_light);
 
 /// Shadow edges of the current sun (HorizonTexture), which replace those stored in the vertices.
 struct MomentaryEdges {

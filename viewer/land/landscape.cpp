@@ -50,7 +50,7 @@ const LandChoice& Landscape::Choice() const {
   return choice_;
 }
 
-LandEye Landscape::EyeAt(const GeodeticPosition& eye) const {
+LandEye Landscape::EyeAt(const Place& eye) const {
   return {tiles_->lattice(), eye, std::max(eye.height_m - Choice().ceiling_m.value_or(0.0), 0.0),
           SightFrom(eye.height_m)};
 }
@@ -109,11 +109,11 @@ double Landscape::farthest_m() const {
   return mesh_ ? SightFrom(eye_place_.height_m) : 0.0;
 }
 
-void Landscape::BeginReading(const GeodeticPosition& place) {
+void Landscape::BeginReading(const Place& place) {
   if (!tiles_->tiles().empty() && cache_.Update(EyeAt(place), detail_)) ground_.CountChange();
 }
 
-void Landscape::AwaitGround(const GeodeticPosition& place) {
+void Landscape::AwaitGround(const Place& place) {
   if (mesh_) {
     mesh_->Wait();
     mesh_->Update(0.0);
@@ -126,7 +126,7 @@ void Landscape::AwaitGround(const GeodeticPosition& place) {
   }
 }
 
-void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double seconds) {
+void Landscape::Update(const Place& eye, const LandView& view, double seconds) {
   ++frame_;
   eye_place_ = eye;
   view_ = view;
@@ -167,7 +167,7 @@ bool Landscape::IsAllThere(std::size_t chunks_before) const {
 // ceilings becomes periodic. It need not converge: coarse land may be higher than the fine land
 // that replaces it, so that the two ceilings alternate. The lowest ceiling of the cycle is then
 // kept.
-void Landscape::WaitUntilReady(const GeodeticPosition& eye, const LandView& view) {
+void Landscape::WaitUntilReady(const Place& eye, const LandView& view) {
   constexpr double kLong_s = 1e3;
   std::vector<std::optional<double>> ceilings;
   for (int still = 0; still < 3;) {
@@ -226,16 +226,16 @@ void Landscape::Draw(LandDrawn what, GLuint view_binding, const LandLook& look,
             [&] { set_->Draw(drawn, fade_.from()); });
 }
 
-std::optional<double> LandGround::HeightUnder(const GeodeticPosition& place) const {
+std::optional<double> LandGround::HeightUnder(const Place& place) const {
   if (mesh_) return mesh_->GroundUnder(place);
-  return cache_.loaded()->HeightUnder(place.latitude_rad, place.longitude_rad);
+  return cache_.loaded()->HeightUnder(place.latitude_rad(), place.longitude_rad());
 }
 
-std::optional<double> LandGround::HighestAt(const GeodeticPosition& place) const {
+std::optional<double> LandGround::HighestAt(const Place& place) const {
   return mesh_ ? mesh_->HighestGround(place) : HeightUnder(place);
 }
 
-bool LandGround::IsKnownAt(const GeodeticPosition& place) const {
+bool LandGround::IsKnownAt(const Place& place) const {
   return mesh_ ? mesh_->IsRead() : cache_.HasRead(place);
 }
 
@@ -261,8 +261,7 @@ bool Landscape::HasCome() const {
 
 GroundSampler LandGround::Sampler() const {
   if (mesh_) return mesh_->Sampler();
-  return [loaded = cache_.loaded()](const GeodeticPosition& place, double half_width_m,
-                                    int most_samples) {
+  return [loaded = cache_.loaded()](const Place& place, double half_width_m, int most_samples) {
     return loaded->SampledGrid(place, half_width_m, most_samples);
   };
 }
@@ -308,11 +307,11 @@ LandFigures Landscape::Figures() const {
   return figures;
 }
 
-LandAnchor Landscape::AnchorAt(const GeodeticPosition& eye) const {
+LandAnchor Landscape::AnchorAt(const Place& eye) const {
   const LandLattice& lattice = tiles_->lattice();
   const int column = std::clamp(static_cast<int>(eye_.at.column), 0, lattice.last_column);
   const int row = std::clamp(static_cast<int>(eye_.at.row), 0, lattice.last_row);
-  return {LocalFrame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0}), column, row};
+  return {LocalFrame(ellipsoid_, {eye.latitude_deg, eye.longitude_deg, 0.0}), column, row};
 }
 
 // Estimates the number of chunks: for each level a disk around the eye, at most the whole level,
@@ -346,7 +345,7 @@ void Landscape::MoveAnchor() {
     choice_.drawn.clear();
     return;
   }
-  GeodeticPosition foot = eye_place_;
+  Place foot = eye_place_;
   foot.height_m = 0.0;
   const double away = glm::length(set_->anchor().frame.EnuFromGeodetic(foot).xyz);
   if (away > kAnchorReach_m) next_set_ = NewSet();

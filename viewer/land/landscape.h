@@ -66,15 +66,13 @@ class LandGround {
   /// Returns the height of the ground [m] under an eye at a place, equal to the surface drawn near
   /// the eye. Empty if there is no ground or it is not loaded. For a mesh with roofs this is the
   /// highest surface that is not above the place.
-  [[nodiscard]] std::optional<double> HeightUnder(const GeodeticPosition& place) const;
+  [[nodiscard]] std::optional<double> HeightUnder(const Place& place) const;
   /// Returns the height of the highest surface at a place, independent of the place's own height.
-  [[nodiscard]] std::optional<double> HighestAt(const GeodeticPosition& place) const;
+  [[nodiscard]] std::optional<double> HighestAt(const Place& place) const;
   /// Returns whether the result of HeightUnder is final: all land at a place is loaded.
-  [[nodiscard]] bool IsKnownAt(const GeodeticPosition& place) const;
+  [[nodiscard]] bool IsKnownAt(const Place& place) const;
   /// Returns whether any land covers a place, loaded or not. A mesh covers every place.
-  [[nodiscard]] bool Reaches(const GeodeticPosition& place) const {
-    return mesh_ || cache_.Reaches(place);
-  }
+  [[nodiscard]] bool Reaches(const Place& place) const { return mesh_ || cache_.Reaches(place); }
   /// Returns LoadedHeights::SampledGrid or GridOverMesh of the heights loaded now, callable on any
   /// thread.
   [[nodiscard]] GroundSampler Sampler() const;
@@ -101,13 +99,13 @@ class Landscape {
   /// Collects finished work, requests what is missing, and begins to choose the chunks to draw.
   /// Never waits. Throws InputError if a file that was named explicitly turns out to be damaged.
   /// @param seconds  time since the last call, by which new levels and lights fade in.
-  void Update(const GeodeticPosition& eye, const LandView& view, double seconds);
+  void Update(const Place& eye, const LandView& view, double seconds);
   /// Waits until everything that this eye needs is loaded and no longer changes.
-  void WaitUntilReady(const GeodeticPosition& eye, const LandView& view);
+  void WaitUntilReady(const Place& eye, const LandView& view);
   /// Starts to read the tiles around a place, before the first Update.
-  void BeginReading(const GeodeticPosition& place);
+  void BeginReading(const Place& place);
   /// Waits until the ground at a place is known.
-  void AwaitGround(const GeodeticPosition& place);
+  void AwaitGround(const Place& place);
   /// Draws the chunks that the last Update chose, with its view, into the bound GBuffer or
   /// DepthPrepass, which is cleared first. The uniform block View must be bound to `view_binding`.
   /// @param narrower  another view, which that block has: only chunks that may be in it are drawn.
@@ -149,8 +147,8 @@ class Landscape {
   [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }
 
  private:
-  [[nodiscard]] LandEye EyeAt(const GeodeticPosition& eye) const;
-  [[nodiscard]] LandAnchor AnchorAt(const GeodeticPosition& eye) const;
+  [[nodiscard]] LandEye EyeAt(const Place& eye) const;
+  [[nodiscard]] LandAnchor AnchorAt(const Place& eye) const;
   [[nodiscard]] int ExpectedChunks(double detail) const;
   [[nodiscard]] std::unique_ptr<ChunkSet> NewSet() const;
   void MoveAnchor();
@@ -178,7 +176,7 @@ class Landscape {
   Ellipsoid ellipsoid_;
   ChunkTree tree_;
   TileCache cache_;
-  GeodeticPosition eye_place_;
+  Place eye_place_;
   LandEye eye_;
   LandView view_;
   bool over_ground_ = false;

@@ -49,17 +49,17 @@ struct Extent {
 
 /// Returns the bounding box of a mesh. Its edges may be curved in latitude and longitude, so their
 /// midpoints are included.
-Extent ExtentOf(const Terrain& terrain, const LocalFrame& frame, const GeodeticPosition& place,
+Extent ExtentOf(const Terrain& terrain, const LocalFrame& frame, const Place& place,
                 const SampleSize& radian) {
   const auto [low, high] = terrain.Bounds();
   Extent extent;
   for (const double x : {0.0, 0.5, 1.0}) {
     for (const double y : {0.0, 0.5, 1.0}) {
       const glm::dvec3 point = low + glm::dvec3(x, y, 0.5) * (high - low);
-      const GeodeticPosition at = frame.GeodeticFromEnu({point});
-      const double turn = std::remainder(at.longitude_rad - place.longitude_rad, 2.0 * kPi);
+      const Place at = frame.GeodeticFromEnu({point});
+      const double turn = std::remainder(at.longitude_rad() - place.longitude_rad(), 2.0 * kPi);
       extent.east.Add(turn * radian.column_m);
-      extent.north.Add((at.latitude_rad - place.latitude_rad) * radian.row_m);
+      extent.north.Add((at.latitude_rad() - place.latitude_rad()) * radian.row_m);
     }
   }
   return extent;
@@ -103,10 +103,10 @@ std::vector<ChunkLight> LightOfMesh(const TriangleMesh& mesh, const LocalFrame& 
 }  // namespace
 
 std::optional<ElevationGrid> GridOverMesh(const Terrain& terrain, const LocalFrame& frame,
-                                          const GeodeticPosition& place, double half_width_m,
+                                          const Place& place, double half_width_m,
                                           int most_samples) {
   if (most_samples < 2 || terrain.mesh().triangles.empty()) return std::nullopt;
-  const SampleSize radian = MetresOfRadian(place.latitude_rad);
+  const SampleSize radian = MetresOfRadian(place.latitude_rad());
   const Extent all = ExtentOf(terrain, frame, place, radian);
   const Span east = all.east.Nearest(half_width_m), north = all.north.Nearest(half_width_m);
   constexpr double kFinest_m = 0.01;
@@ -121,12 +121,13 @@ std::optional<ElevationGrid> GridOverMesh(const Terrain& terrain, const LocalFra
   grid.rows = samples(north);
   grid.step_lon_rad = step_m / radian.column_m;
   grid.step_lat_rad = step_m / radian.row_m;
-  grid.west_rad = place.longitude_rad + east.low_m / radian.column_m;
-  grid.north_rad = place.latitude_rad + north.high_m / radian.row_m;
+  grid.west_rad = place.longitude_rad() + east.low_m / radian.column_m;
+  grid.north_rad = place.latitude_rad() + north.high_m / radian.row_m;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const auto ground = GroundHeightsAt(
-          terrain, frame, {grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column), 0.0});
+          terrain, frame,
+          PlaceFromRadians(grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column), 0.0));
       grid.height_m.push_back(ground ? static_cast<float>(ground->highest_m)
                                      : std::numeric_limits<float>::quiet_NaN());
     }
@@ -190,8 +191,8 @@ void MeshLand::Update(double seconds) {
   if (fade_.HasShown()) lighter_.GiveWay();
 }
 
-void MeshLand::Draw(LandPass& pass, LandDrawn what, const LandLook& look,
-                    const GeodeticPosition& eye, GLuint view_binding) {
+void MeshLand::Draw(LandPass& pass, LandDrawn what, const LandLook& look, const Place& eye,
+                    GLuint view_binding) {
   if (!terrain_) return;
   glBindVertexArray(layout_.id());
   DescribeLight(LightOn(fade_.from()), LandPass::kOldLight);
@@ -204,12 +205,12 @@ void MeshLand::Draw(LandPass& pass, LandDrawn what, const LandLook& look,
   });
 }
 
-std::optional<double> MeshLand::GroundUnder(const GeodeticPosition& place) const {
+std::optional<double> MeshLand::GroundUnder(const Place& place) const {
   if (!terrain_) return std::nullopt;
   return GroundUnderEye(*terrain_, frame_, place);
 }
 
-std::optional<double> MeshLand::HighestGround(const GeodeticPosition& place) const {
+std::optional<double> MeshLand::HighestGround(const Place& place) const {
   if (!terrain_) return std::nullopt;
   const std::optional<GroundHeights> ground = GroundHeightsAt(*terrain_, frame_, place);
   if (!ground) return std::nullopt;
@@ -217,7 +218,7 @@ std::optional<double> MeshLand::HighestGround(const GeodeticPosition& place) con
 }
 
 GroundSampler MeshLand::Sampler() const {
-  return [terrain = terrain_, frame = frame_](const GeodeticPosition& place, double half_width_m,
+  return [terrain = terrain_, frame = frame_](const Place& place, double half_width_m,
                                               int most_samples) -> std::optional<ElevationGrid> {
     if (!terrain) return std::nullopt;
     return GridOverMesh(*terrain, frame, place, half_width_m, most_samples);

@@ -28,8 +28,7 @@ namespace alpenglow::viewer {
 /// @param frame  of the mesh's coordinates.
 /// @return empty if no two neighbouring samples could hit the mesh.
 [[nodiscard]] std::optional<ElevationGrid> GridOverMesh(const Terrain& terrain,
-                                                        const LocalFrame& frame,
-                                                        const GeodeticPosition& place,
+                                                        const LocalFrame& frame, const Place& place,
                                                         double half_width_m, int most_samples);
 
 class MeshLand {
@@ -44,7 +43,7 @@ class MeshLand {
     reader_.Wait();
     lighter_.Wait();
   }
-  void Draw(LandPass& pass, LandDrawn what, const LandLook& look, const GeodeticPosition& eye,
+  void Draw(LandPass& pass, LandDrawn what, const LandLook& look, const Place& eye,
             GLuint view_binding);
 
   void Relight(LightOfVertices light) { fade_.Request(std::move(light)); }
@@ -53,8 +52,8 @@ class MeshLand {
   [[nodiscard]] bool IsRead() const { return terrain_ != nullptr; }
 
   /// Return viewer::GroundUnderEye, and the highest ground at the place.
-  [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
-  [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
+  [[nodiscard]] std::optional<double> GroundUnder(const Place& place) const;
+  [[nodiscard]] std::optional<double> HighestGround(const Place& place) const;
   /// Returns GridOverMesh of the mesh loaded now. Any thread may call it, at any later time.
   [[nodiscard]] GroundSampler Sampler() const;
   /// Returns the warnings about the file, once (MeshModel).

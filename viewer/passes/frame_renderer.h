@@ -84,8 +84,7 @@ class FrameRenderer {
   /// Returns the linear picture of the last frame.
   [[nodiscard]] const RenderTarget& picture() const { return painter_.picture(); }
   /// Returns the sky of an eye (SkyPainter::SkyAt).
-  [[nodiscard]] const std::shared_ptr<const FrameSky>& SkyAt(const GeodeticPosition& eye,
-                                                             const UtcTime& now) {
+  [[nodiscard]] const std::shared_ptr<const FrameSky>& SkyAt(const Place& eye, const UtcTime& now) {
     return painter_.SkyAt(eye, now);
   }
   /// Returns the luminance [cd/m^2] in a picture of one or two frames ago, at fractions of its

@@ -66,7 +66,7 @@ LightsOfSky LightsOf(const SkyBodies& bodies, const SunPosition& sun, const Moon
 
 }  // namespace
 
-FrameSky FrameSkyAt(const GeodeticPosition& eye, const UtcTime& now, const AirOfSky& air) {
+FrameSky FrameSkyAt(const Place& eye, const UtcTime& now, const AirOfSky& air) {
   const SkyBodies bodies = SkyBodiesAt(eye, now);
   FrameSky sky{bodies, bodies.ApparentSun(air.refracting), std::nullopt, false, {}, 0.0};
   const double altitude_m = std::max(eye.height_m, 0.0);
@@ -84,7 +84,7 @@ FrameSky FrameSkyAt(const GeodeticPosition& eye, const UtcTime& now, const AirOf
 }
 
 const std::shared_ptr<const FrameSky>& FrameSkyFollower::At(
-    const GeodeticPosition& eye, const UtcTime& now, const std::shared_ptr<const SolvedAir>& air) {
+    const Place& eye, const UtcTime& now, const std::shared_ptr<const SolvedAir>& air) {
   const bool is_same_air = air_ && air_->air == air;
   if (is_same_air && sky_->bodies.place == eye && sky_->bodies.instant == now) return sky_;
   std::optional<AirOfSky> next;  // kept only with its sky, in case an error leaves this function

@@ -71,14 +71,13 @@ struct FrameSky {
 /// Computes the sky of an eye. A light is included if its contribution on a level surface at the
 /// eye, in the band nearest to 555 nm, exceeds a ten-thousandth of the other's. Planets other than
 /// the Earth have no moon and no eclipses; their only light is the sun.
-[[nodiscard]] FrameSky FrameSkyAt(const GeodeticPosition& eye, const UtcTime& now,
-                                  const AirOfSky& air);
+[[nodiscard]] FrameSky FrameSkyAt(const Place& eye, const UtcTime& now, const AirOfSky& air);
 
 /// Keeps the sky of the newest place, time and medium, so that it is computed once per frame.
 class FrameSkyFollower {
  public:
   [[nodiscard]] const std::shared_ptr<const FrameSky>& At(
-      const GeodeticPosition& eye, const UtcTime& now, const std::shared_ptr<const SolvedAir>& air);
+      const Place& eye, const UtcTime& now, const std::shared_ptr<const SolvedAir>& air);
 
  private:
   std::optional<AirOfSky> air_;

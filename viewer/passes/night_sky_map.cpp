@@ -24,9 +24,9 @@ void Upload(const GlTexture& map, int unit, int columns, int rows,
 
 }  // namespace
 
-NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcTime& now, const Medium& medium,
+NightSkyMap NightSkyMapOver(const Place& eye, const UtcTime& now, const Medium& medium,
                             const BandColour& colour, const SceneSkyglow& towns) {
-  const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
+  const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad()));
   std::optional<BandLight> town_light;
   if (towns.zenith) town_light = Skyglow(*towns.zenith, towns.ground_m, air, colour);
   const NightLight night(NightSky(eye, now), air, colour, {0.0, 0.0, 1.0},
@@ -57,8 +57,8 @@ bool NightSkyMapFollower::Suits(const Request& requested, const Request& wanted)
   constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-3, kMostRise_m = 1000.0;
   return requested.air == wanted.air &&
          std::abs(SecondsBetween(requested.now, wanted.now)) < kMostTurn_s &&
-         std::abs(requested.place.latitude_rad - wanted.place.latitude_rad) < kMostWay_rad &&
-         std::abs(requested.place.longitude_rad - wanted.place.longitude_rad) < kMostWay_rad &&
+         std::abs(requested.place.latitude_rad() - wanted.place.latitude_rad()) < kMostWay_rad &&
+         std::abs(requested.place.longitude_rad() - wanted.place.longitude_rad()) < kMostWay_rad &&
          std::abs(requested.place.height_m - wanted.place.height_m) < kMostRise_m;
 }
 

@@ -40,7 +40,7 @@ struct SceneSkyglow {
   double ground_m = 0.0;                        // height of that ground over the ellipsoid, >= 0
 };
 
-[[nodiscard]] NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcTime& now,
+[[nodiscard]] NightSkyMap NightSkyMapOver(const Place& eye, const UtcTime& now,
                                           const Medium& medium, const BandColour& colour,
                                           const SceneSkyglow& towns = {});
 
@@ -62,7 +62,7 @@ class NightSkyMapFollower {
 
  private:
   struct Request {
-    GeodeticPosition place;
+    Place place;
     UtcTime now;
     std::shared_ptr<const SolvedAir> air;
   };

@@ -20,13 +20,13 @@ constexpr double kLong_s = 1e3;  // time after which all fades have ended
 // does not need it.
 SceneGround LampGroundOf(const Scene& scene) {
   if (!scene.lights.empty() || !scene.layers.empty() || scene.town_zenith) return LoadGround(scene);
-  GeodeticPosition foot = scene.place;
+  Place foot = scene.place;
   foot.height_m = 0.0;
   return {LocalFrame(EllipsoidOf(scene.medium), foot), std::nullopt, 0.0, "", true};
 }
 
 Medium MediumAt(const Scene& scene) {
-  return OnOsculatingSphere(scene.medium, scene.place.latitude_rad);
+  return OnOsculatingSphere(scene.medium, scene.place.latitude_rad());
 }
 
 LandSize LandSizeOf(const PaintSizes& sizes) {
@@ -49,7 +49,7 @@ LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) 
 }
 
 AirView AirViewOf(const CameraPose& eye, const LightDirection& light) {
-  return {std::max(eye.place.height_m, 0.0), eye.place.latitude_rad, light};
+  return {std::max(eye.place.height_m, 0.0), eye.place.latitude_rad(), light};
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
   if (known_air_ != air_.air()) {
     known_air_ = air_.air();
     air_here_ =
-        std::make_shared<const SolvedAir>(known_air_->OnSphereAt(view.eye.place.latitude_rad));
+        std::make_shared<const SolvedAir>(known_air_->OnSphereAt(view.eye.place.latitude_rad()));
     glActiveTexture(GL_TEXTURE0 + kUploadUnit);
     ground_textures_.SetAir(known_air_->multiple_scattering());
   }

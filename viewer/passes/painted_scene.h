@@ -40,7 +40,7 @@ struct FixedScene {
   /// @param has_land  whether the scene has land anywhere.
   FixedScene(const Scene& scene, bool has_land);
 
-  GeodeticPosition place;
+  Place place;
   Ellipsoid ellipsoid;
   SceneGround lamp_ground;  // on which lamps and media are placed
   SceneDrape drape;

@@ -86,7 +86,7 @@ std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_
 }
 
 double RadiusUnder(const CameraPose& eye, const Medium& medium) {
-  return OnOsculatingSphere(medium, eye.place.latitude_rad).planet_radius_m / kMetresPerKilometre;
+  return OnOsculatingSphere(medium, eye.place.latitude_rad()).planet_radius_m / kMetresPerKilometre;
 }
 
 // A ray d is below the horizon with cosine c <= 0 where d.z - c |d| < 0. This function is convex

@@ -168,7 +168,7 @@ GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const CameraPose& ey
   const GroundSurfaceBlock cover = Mirrored(GroundSurfaceBlockOf(scene.fixed().material),
                                             scene.ground().gloss_mirror(scene.ground().casts()));
   if (!scene.fixed().drape.colours) return cover;
-  GeodeticPosition origin = scene.fixed().place;
+  Place origin = scene.fixed().place;
   origin.height_m = 0.0;
   const LocalFrame frame(scene.fixed().ellipsoid, eye.place);
   return Draped(cover, scene.fixed().drape.place,

@@ -64,7 +64,7 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
                        const PaintSizes& sizes, FirstAir first_air)
     : scene_(scene, land, first, sizes, std::move(first_air)),
       lamps_(scene, scene_.fixed().lamp_ground,
-             OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
+             OnOsculatingSphere(scene.medium, scene.place.latitude_rad())),
       lamp_painter_(lamps_, sizes.lamps, kLampUnits),
       shaft_pass_(ConnectedShafts(scene_)),
       night_sky_map_({scene.town_zenith,

@@ -94,8 +94,7 @@ class SkyPainter {
   [[nodiscard]] Landscape& land() { return scene_.land(); }
   [[nodiscard]] const PaintedScene& scene() const { return scene_; }
   /// Returns the sky of an eye in the current medium. All calls of a frame return the same object.
-  [[nodiscard]] const std::shared_ptr<const FrameSky>& SkyAt(const GeodeticPosition& eye,
-                                                             const UtcTime& now) {
+  [[nodiscard]] const std::shared_ptr<const FrameSky>& SkyAt(const Place& eye, const UtcTime& now) {
     return sky_.At(eye, now, scene_.air().air());
   }
 

@@ -215,8 +215,8 @@ bool StarPainter::IsNight(const FrameSky& sky, const std::shared_ptr<const Solve
 bool StarPainter::Suits(const Request& requested, const Request& wanted) {
   return requested.colour == wanted.colour &&
          std::abs(SecondsBetween(requested.now, wanted.now)) < kMostTurn_s &&
-         std::abs(requested.place.latitude_rad - wanted.place.latitude_rad) < kMostWay_rad &&
-         std::abs(requested.place.longitude_rad - wanted.place.longitude_rad) < kMostWay_rad &&
+         std::abs(requested.place.latitude_rad() - wanted.place.latitude_rad()) < kMostWay_rad &&
+         std::abs(requested.place.longitude_rad() - wanted.place.longitude_rad()) < kMostWay_rad &&
          std::abs(requested.place.height_m - wanted.place.height_m) < kMostRise_m;
 }
 
@@ -284,7 +284,7 @@ std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const Fram
   const double faintest_lux = IlluminanceOf(FaintestStar(sky_lux_, PixelAngle(view)));
   const Made& made = maker_.value().value();
   const glm::dmat3 turn =
-      TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made.request.now, view.now));
+      TurnOfSky(view.eye.place.latitude_rad(), SecondsBetween(made.request.now, view.now));
   const MoonDisk moon = sky.moon.value_or(MoonDisk{});
   return StarPointsIn(
       view, {made.stars, turn, faintest_lux, moon.direction.seen, moon.radius_rad, &made.bent});

@@ -108,7 +108,7 @@ class StarPainter {
 
  private:
   struct Request {
-    GeodeticPosition place;
+    Place place;
     UtcTime now;
     std::shared_ptr<const BandColour> colour;
     std::shared_ptr<const SolvedAir> air;  // refracts their light

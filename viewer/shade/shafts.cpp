@@ -145,8 +145,8 @@ constexpr double kPlaceStep = 0.2;   // fraction of the ground's half width
 constexpr int kLinesOfAFrame = 256;  // two megabytes for a thousand columns
 
 bool AreOne(const LocalFrame& a, const LocalFrame& b) {
-  return a.origin().latitude_rad == b.origin().latitude_rad &&
-         a.origin().longitude_rad == b.origin().longitude_rad;
+  return a.origin().latitude_deg == b.origin().latitude_deg &&
+         a.origin().longitude_deg == b.origin().longitude_deg;
 }
 
 }  // namespace
@@ -193,10 +193,10 @@ void ShadeFollower::SetGround(GroundSampler sampler) {
 
 void ShadeFollower::SetSize(const ShadeSize& size) { size_ = size; }
 
-ShadeFollower::Request ShadeFollower::RequestFor(const GeodeticPosition& eye,
+ShadeFollower::Request ShadeFollower::RequestFor(const Place& eye,
                                                  const DistantLight& light) const {
   const LocalFrame here(ellipsoid_, eye);
-  LocalFrame frame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0});
+  LocalFrame frame(ellipsoid_, {eye.latitude_deg, eye.longitude_deg, 0.0});
   // Heights are kept while the eye is near their centre.
   const std::optional<Request>& last = maker_.requested();
   if (last && DistanceBetween(last->frame, frame) < kPlaceStep * size_.half_width_m)
@@ -223,21 +223,20 @@ void ShadeFollower::Upload(int lines, int unit) {
   if (texture_.Upload(lines, unit)) used_ = std::exchange(coming_, nullptr);
 }
 
-void ShadeFollower::Follow(const GeodeticPosition& eye, const DistantLight& light, int unit) {
+void ShadeFollower::Follow(const Place& eye, const DistantLight& light, int unit) {
   // If the sun moves faster than maps are made, a finished map must still be shown.
   if (!coming_) maker_.RequestWhenIdle(RequestFor(eye, light));
   if (!coming_) PollFinished();
   Upload(kLinesOfAFrame, unit);
 }
 
-void ShadeFollower::WaitUntilReady(const GeodeticPosition& eye, const DistantLight& light,
-                                   int unit) {
+void ShadeFollower::WaitUntilReady(const Place& eye, const DistantLight& light, int unit) {
   maker_.WaitUntilReady(RequestFor(eye, light));
   PollFinished();
   Upload(std::numeric_limits<int>::max(), unit);
 }
 
-bool ShadeFollower::IsOf(const GeodeticPosition& eye, const DistantLight& light) const {
+bool ShadeFollower::IsOf(const Place& eye, const DistantLight& light) const {
   const double near = std::cos(3.0 * kRadiansPerDegree);
   if (!used_) return false;
   const LocalFrame here(ellipsoid_, eye);
@@ -245,7 +244,7 @@ bool ShadeFollower::IsOf(const GeodeticPosition& eye, const DistantLight& light)
   return glm::dot(glm::normalize(used_->frame.EnuFromEcef(to_light).xyz), used_->to_light) > near;
 }
 
-glm::dmat4 ShadeFollower::MapFromEye(const GeodeticPosition& eye) const {
+glm::dmat4 ShadeFollower::MapFromEye(const Place& eye) const {
   ALPENGLOW_ENSURE(texture_.Shades(), ==, true);
   const FrameTransform to_map(used_->frame, LocalFrame(ellipsoid_, eye));
   glm::dmat4 map_from_eye(to_map.axes());

@@ -146,18 +146,18 @@ class ShadeFollower {
   /// Uploads finished maps through a texture unit and requests a new map if needed. Call it once
   /// per frame, before drawing. Never waits.
   /// @param light  in the frame east, north, up of the eye.
-  void Follow(const GeodeticPosition& eye, const DistantLight& light, int unit);
+  void Follow(const Place& eye, const DistantLight& light, int unit);
   /// Waits for the final result of Follow. Used for pictures that are saved.
-  void WaitUntilReady(const GeodeticPosition& eye, const DistantLight& light, int unit);
+  void WaitUntilReady(const Place& eye, const DistantLight& light, int unit);
 
   /// The map in use.
   [[nodiscard]] const ShadeTexture& shade() const { return texture_; }
   /// Returns whether the map in use is for a sun or moon within three degrees of this one. After a
   /// jump in time it differs for some frames.
-  [[nodiscard]] bool IsOf(const GeodeticPosition& eye, const DistantLight& light) const;
+  [[nodiscard]] bool IsOf(const Place& eye, const DistantLight& light) const;
   /// Returns the transformation from metres in the frame (east, north, up) at an eye to metres in
   /// the map's frame. Requires shade().Shades().
-  [[nodiscard]] glm::dmat4 MapFromEye(const GeodeticPosition& eye) const;
+  [[nodiscard]] glm::dmat4 MapFromEye(const Place& eye) const;
   /// Computing time of the map in use; 0 before the first map.
   [[nodiscard]] double making_s() const { return used_ ? used_->making_s : 0.0; }
 
@@ -178,7 +178,7 @@ class ShadeFollower {
   /// Makes maps. It keeps the heights between maps of the same ground.
   class Maker;
 
-  [[nodiscard]] Request RequestFor(const GeodeticPosition& eye, const DistantLight& light) const;
+  [[nodiscard]] Request RequestFor(const Place& eye, const DistantLight& light) const;
   [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
   void PollFinished();
   void Upload(int lines, int unit);

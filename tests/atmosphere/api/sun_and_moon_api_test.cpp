@@ -86,7 +86,7 @@ TEST(PlaceTime, YearsWithoutKnownPositionsAreRefused) {
 TEST(SunInSky, IsTheSunOfTheLayerBelow) {
   const auto medium =
       atmosphere::OnOsculatingSphere(atmosphere::MediumPreset("earth"), 35.36 * kRadiansPerDegree);
-  const auto place = atmosphere::PlaceFromDegrees(35.36, 138.73, 2500.0);
+  const auto place = Place{35.36, 138.73, 2500.0};
   const auto instant = atmosphere::ParseInstant("2026-06-21T09:30:00Z");
   const auto expected = atmosphere::ApparentSunAt(place, instant, atmosphere::GentleAirOf(medium));
   const SunInSky sun = SunAt(kFuji, TimeFromText("2026-06-21T09:30:00Z"));
@@ -99,9 +99,9 @@ TEST(SunInSky, IsTheSunOfTheLayerBelow) {
 TEST(MoonInSky, IsTheMoonOfTheLayerBelow) {
   const auto medium =
       atmosphere::OnOsculatingSphere(atmosphere::MediumPreset("earth"), 35.36 * kRadiansPerDegree);
-  const auto expected = atmosphere::ApparentMoonAt(
-      atmosphere::PlaceFromDegrees(35.36, 138.73, 2500.0),
-      atmosphere::ParseInstant("2026-06-21T09:30:00Z"), atmosphere::GentleAirOf(medium));
+  const auto expected = atmosphere::ApparentMoonAt(Place{35.36, 138.73, 2500.0},
+                                                   atmosphere::ParseInstant("2026-06-21T09:30:00Z"),
+                                                   atmosphere::GentleAirOf(medium));
   const MoonInSky moon = MoonAt(kFuji, TimeFromText("2026-06-21T09:30:00Z"));
   EXPECT_EQ(moon.elevation_deg, expected.elevation_rad / kRadiansPerDegree);
   EXPECT_EQ(moon.azimuth_deg, expected.azimuth_rad / kRadiansPerDegree);
@@ -111,9 +111,9 @@ TEST(MoonInSky, IsTheMoonOfTheLayerBelow) {
 TEST(SunEventTime, IsThatOfTheLayerBelow) {
   const auto noon = TimeFromText("2026-06-21T03:00:00Z");
   const std::optional<UtcTime> sunset = SunEventTime("sunset", kFuji, noon);
-  const auto expected = atmosphere::FindSunEvent(
-      atmosphere::SunEvent::kSunset, atmosphere::PlaceFromDegrees(35.36, 138.73, 2500.0),
-      atmosphere::ParseInstant("2026-06-21T03:00:00Z"));
+  const auto expected =
+      atmosphere::FindSunEvent(atmosphere::SunEvent::kSunset, Place{35.36, 138.73, 2500.0},
+                               atmosphere::ParseInstant("2026-06-21T03:00:00Z"));
   ASSERT_TRUE(sunset);
   EXPECT_EQ(sunset, expected);
   EXPECT_EQ(SunEventTime("sunset", {80.0, 0.0, 0.0}, noon), std::nullopt);

@@ -206,8 +206,8 @@ class Besselian {
   double delta_t_s_, longitude_deg_, sine_, cosine_;
 };
 
-GeodeticPosition PlaceOf(const City& city) {
-  return PlaceFromDegrees(city.latitude_deg, city.longitude_deg, city.height_m);
+Place PlaceOf(const City& city) {
+  return CheckedPlace({city.latitude_deg, city.longitude_deg, city.height_m});
 }
 
 const SolarEclipse& EclipseOf2026(std::size_t city) {
@@ -273,7 +273,7 @@ TEST(Eclipse, MomentsComeInTheirOrderAndTheMaximumIsTheDeepest) {
 // The moon's shadow passes Cape Town by that day.
 TEST(Eclipse, IsNoneWhereTheShadowPassesByAndUnseenByNight) {
   const UtcTime day = ParseInstant("2026-08-12T00:00:00Z");
-  EXPECT_FALSE(FindSolarEclipse(PlaceFromDegrees(-33.9, 18.4, 0.0), day, 86400.0));
+  EXPECT_FALSE(FindSolarEclipse(Place{-33.9, 18.4, 0.0}, day, 86400.0));
   const SolarEclipse& in_madrid = EclipseOf2026(7);
   EXPECT_TRUE(in_madrid.first_contact.IsSeen());
   EXPECT_TRUE(in_madrid.maximum.IsSeen());
@@ -283,7 +283,7 @@ TEST(Eclipse, IsNoneWhereTheShadowPassesByAndUnseenByNight) {
 
 TEST(Eclipse, OtherNewMoonsOfTheYearPassTheSunBy) {
   // The search has three days about each new moon, which are 29.53 days apart within 0.6 days.
-  const GeodeticPosition burgos = PlaceOf(kCities[3]);
+  const Place burgos = PlaceOf(kCities[3]);
   int eclipses = 0;
   for (int moon = -7; moon <= 4; ++moon) {
     const UtcTime start =
@@ -299,7 +299,7 @@ TEST(Eclipse, OtherNewMoonsOfTheYearPassTheSunBy) {
 // Annular eclipse of 2023 October 14 in Albuquerque: a ring for 4 min 48 s (Espenak, NASA), near
 // the middle of the path.
 TEST(Eclipse, ARingStandsAroundTheMoonWhereItIsAnnular) {
-  const auto eclipse = FindSolarEclipse(PlaceFromDegrees(35.0844, -106.6504, 1620.0),
+  const auto eclipse = FindSolarEclipse(Place{35.0844, -106.6504, 1620.0},
                                         ParseInstant("2023-10-14T06:00:00Z"), 86400.0);
   ASSERT_TRUE(eclipse);
   ASSERT_TRUE(eclipse->inner);

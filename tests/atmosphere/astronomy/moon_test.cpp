@@ -20,7 +20,7 @@ namespace {
 constexpr double kArcsecond = kRadiansPerDegree / 3600.0;
 
 /// The centre of the earth, for which almanacs are made.
-constexpr GeodeticPosition kGeocentre{0.0, 0.0, -6378137.0};
+constexpr Place kGeocentre{0.0, 0.0, -6378137.0};
 
 /// Returns the moon at an instant of terrestrial time.
 MoonPosition AtTerrestrial(const char* time) { return MoonAt(kGeocentre, ParseInstant(time), 0.0); }
@@ -52,7 +52,7 @@ TEST(Moon, IsFullAndNewWhenAlmanacsSay) {
   EXPECT_GT(eclipsed.IlluminatedFraction(), 0.9999);
   // The total solar eclipse of 1999 August 11 is greatest at 11:03:04 UT at 45.1 N 24.3 E
   // (Espenak).
-  const GeodeticPosition place = PlaceFromDegrees(45.0667, 24.2833, 0.0);
+  const Place place{45.0667, 24.2833, 0.0};
   const UtcTime instant = ParseInstant("1999-08-11T11:03:04Z");
   const MoonPosition moon = MoonAt(place, instant);
   const SunPosition sun = SunAt(place, instant);
@@ -69,7 +69,7 @@ TEST(Moon, StandsLowerOverTheHorizonThanFromTheCentreOfTheEarth) {
   const double longitude = std::atan2(centre.direction.xyz.y, centre.direction.xyz.x);
   const MoonPosition under = MoonAt({std::asin(centre.direction.xyz.z), longitude, 0.0}, instant);
   EXPECT_NEAR(centre.distance_m - under.distance_m, 6371e3, 20e3) << "nearer by the earth's radius";
-  const GeodeticPosition aside{0.0, longitude + 0.5 * kPi, 0.0};
+  const Place aside{0.0, longitude + 0.5 * kPi, 0.0};
   const MoonPosition low = MoonAt(aside, instant);
   const double parallax = 6378137.0 / centre.distance_m;
   EXPECT_NEAR(low.elevation_rad, std::asin(-std::sin(parallax)), 30.0 * kArcsecond)
@@ -77,7 +77,7 @@ TEST(Moon, StandsLowerOverTheHorizonThanFromTheCentreOfTheEarth) {
 }
 
 TEST(Moon, RefractionLiftsItAsItLiftsTheSun) {
-  const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 500.0);
+  const Place place{46.5, 8.0, 500.0};
   const UtcTime instant = ParseInstant("2026-06-21T20:00:00Z");
   const MoonPosition bare = MoonAt(place, instant), seen = ApparentMoonAt(place, instant);
   EXPECT_EQ(seen.elevation_rad,
@@ -86,7 +86,7 @@ TEST(Moon, RefractionLiftsItAsItLiftsTheSun) {
 }
 
 TEST(Moon, ItsBrightLimbPointsToTheSun) {
-  const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 0.0);
+  const Place place{46.5, 8.0, 0.0};
   for (const char* utc : {"2026-06-18T19:00:00Z", "2026-06-25T19:00:00Z", "2026-07-07T04:00:00Z"}) {
     const UtcTime instant = ParseInstant(utc);
     const MoonPosition moon = MoonAt(place, instant);
@@ -103,10 +103,10 @@ TEST(Moon, ItsBrightLimbPointsToTheSun) {
 }
 
 TEST(Moon, RisesAndSetsWhereItsUpperLimbMeetsTheHorizon) {
-  const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 1200.0);
+  const Place place{46.5, 8.0, 1200.0};
   UtcTime instant = ParseInstant("2026-06-01T00:00:00Z");
   const double horizon =
-      SeaHorizonFrom(1200.0, OsculatingRadius(kWgs84, place.latitude_rad)).true_elevation_rad;
+      SeaHorizonFrom(1200.0, OsculatingRadius(kWgs84, place.latitude_rad())).true_elevation_rad;
   double gap_s = 0.0;
   for (int day = 0; day < 5; ++day) {
     const UtcTime rise = NextMoonrise(place, instant).value();
@@ -121,7 +121,7 @@ TEST(Moon, RisesAndSetsWhereItsUpperLimbMeetsTheHorizon) {
 }
 
 TEST(Moon, StaysUpOrDownForDaysNearThePole) {
-  const GeodeticPosition place = PlaceFromDegrees(85.0, 20.0, 0.0);
+  const Place place{85.0, 20.0, 0.0};
   const UtcTime start = ParseInstant("2026-06-01T00:00:00Z");
   double longest_up_s = 0.0, longest_down_s = 0.0;
   for (UtcTime instant = start; SecondsBetween(start, instant) < 28.0 * 86400.0;) {

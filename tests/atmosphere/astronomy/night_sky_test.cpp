@@ -49,7 +49,7 @@ TEST(NightSky, TheMilkyWayIsBrightTowardsItsCentreAndSplitByDust) {
 TEST(NightSky, TheCentreOfTheGalaxyCulminatesOnJuneNights) {
   // Sagittarius A* at 17h 45m 40s, -29 degrees, passes the meridian of latitude -30 near the
   // zenith.
-  const GeodeticPosition place{.latitude_rad = Radians(-29.0), .longitude_rad = 0.0};
+  const Place place{.latitude_deg = -29.0};
   const glm::dvec3 up(0.0, 0.0, 1.0);
   const UtcTime noon = ParseInstant("2026-06-21T12:00:00Z");
   double brightest = 0.0;
@@ -120,7 +120,7 @@ TEST(Stars, LightAndColourAreThoseOfTheirMagnitudes) {
 }
 
 TEST(Planets, StandOnTheEclipticAsBrightAsAlmanacsSay) {
-  const GeodeticPosition place{.latitude_rad = 0.8};
+  const Place place = PlaceFromRadians(0.8, 0.0, 0.0);
   // Jupiter is in opposition on 2026 January 10 in Gemini, V = -2.7; Saturn has V = 1.2 in Pisces.
   const auto planets = PlanetsAt(place, ParseInstant("2026-01-10T00:00:00Z"));
   const SunPosition sun = SunAt(place, ParseInstant("2026-01-10T00:00:00Z"));

@@ -33,15 +33,15 @@ Vector<Enu> DirectionTo(const SunPosition& sun) {
 }
 
 /// Returns how far the sun moves between two instants [arcseconds].
-double MotionOfSun(const GeodeticPosition& place, const UtcTime& from, const UtcTime& to) {
+double MotionOfSun(const Place& place, const UtcTime& from, const UtcTime& to) {
   return Separation(DirectionTo(SunAt(place, from)), DirectionTo(SunAt(place, to))) /
          kSunArcsecond_rad;
 }
 
 // Reda and Andreas (2004), Solar Energy 76, 577-589 (NREL/TP-560-34302), table A5.1.
 TEST(Sun, ExampleOfTheNrelSolarPositionAlgorithm) {
-  const SunPosition sun = SunAt(PlaceFromDegrees(39.742476, -105.1786, 1830.14),
-                                ParseInstant("2003-10-17T12:30:30-07:00"), 67.0);
+  const SunPosition sun =
+      SunAt(Place{39.742476, -105.1786, 1830.14}, ParseInstant("2003-10-17T12:30:30-07:00"), 67.0);
   const double elevation = sun.elevation_rad / kRadiansPerDegree;
   EXPECT_NEAR(sun.azimuth_rad / kRadiansPerDegree, 194.34024, 0.0003) << "SPA's own tolerance";
   // The published zenith angle is 50.11162 with refraction at 820 mbar and 11 C, by equation 42 of
@@ -62,7 +62,7 @@ struct SpaRow {
 };
 
 double ErrorInArcseconds(const SpaRow& row) {
-  const SunPosition sun = SunAt(PlaceFromDegrees(row.latitude, row.longitude, row.height_m),
+  const SunPosition sun = SunAt(CheckedPlace({row.latitude, row.longitude, row.height_m}),
                                 ParseInstant(row.utc), row.delta_t_s);
   EXPECT_NEAR(sun.distance_au, row.distance_au, 6e-5)
       << "theirs is from the centre of the earth, ours from the place: 4.3e-5 au";
@@ -111,7 +111,7 @@ TEST(Sun, WholeTableOfSpaIsMatchedWithinTwoArcseconds) {
 TEST(Sun, DirectionAndAnglesSayTheSame) {
   for (const double latitude : {-90.0, -33.0, 0.0, 46.5, 90.0}) {
     for (int hour = 0; hour < 24; hour += 3) {
-      const GeodeticPosition place = PlaceFromDegrees(latitude, 8.0, 500.0);
+      const Place place = CheckedPlace({latitude, 8.0, 500.0});
       const SunPosition sun = SunAt(place, AddSeconds(UtcTime{61041, 0.0}, 3600.0 * hour));
       EXPECT_NEAR(glm::length(sun.direction.xyz), 1.0, 1e-15);
       const Vector<Enu> local = LocalFrame(kWgs84, place).EnuFromEcef(sun.direction);
@@ -127,15 +127,14 @@ TEST(Sun, AzimuthCountsFromNorthOverEast) {
   EXPECT_LT(Separation(DirectionFromAngles(0.0, kPi / 2), {{1, 0, 0}}), 1e-16);
   EXPECT_LT(Separation(DirectionFromAngles(kPi / 2, 1.0), {{0, 0, 1}}), 1e-16);
   const auto azimuth_deg = [](const char* utc) {
-    return SunAt(PlaceFromDegrees(47.4, 8.5, 0.0), ParseInstant(utc)).azimuth_rad /
-           kRadiansPerDegree;
+    return SunAt(Place{47.4, 8.5, 0.0}, ParseInstant(utc)).azimuth_rad / kRadiansPerDegree;
   };
   EXPECT_NEAR(azimuth_deg("2026-03-20T06:00:00Z"), 90.0, 10.0) << "it rises in the east";
   EXPECT_NEAR(azimuth_deg("2026-03-20T17:00:00Z"), 270.0, 10.0);
 }
 
 TEST(Sun, IsLargestAtPerihelion) {
-  const GeodeticPosition place = PlaceFromDegrees(0.0, 0.0, 0.0);
+  const Place place{0.0, 0.0, 0.0};
   // Perihelion and aphelion of 2024, USNO: 3 January 01h, 5 July 05h.
   const SunPosition near = SunAt(place, ParseInstant("2024-01-03T01:00:00Z"));
   const SunPosition far = SunAt(place, ParseInstant("2024-07-05T05:00:00Z"));
@@ -149,8 +148,8 @@ TEST(Sun, IsLargestAtPerihelion) {
 TEST(Sun, AtAPoleElevationIsOneAndAzimuthsFollowTheLongitude) {
   const UtcTime instant = ParseInstant("2026-06-21T09:00:00Z");
   for (const double latitude : {-90.0, 90.0}) {
-    const SunPosition a = SunAt(PlaceFromDegrees(latitude, 0.0, 0.0), instant);
-    const SunPosition b = SunAt(PlaceFromDegrees(latitude, 120.0, 0.0), instant);
+    const SunPosition a = SunAt(CheckedPlace({latitude, 0.0, 0.0}), instant);
+    const SunPosition b = SunAt(CheckedPlace({latitude, 120.0, 0.0}), instant);
     EXPECT_NEAR(a.elevation_rad, b.elevation_rad, 1e-15);
     EXPECT_NEAR(std::abs(a.elevation_rad) / kRadiansPerDegree, 23.44, 0.01) << "solstice";
     const double turn = (latitude > 0 ? 1.0 : -1.0) * (b.azimuth_rad - a.azimuth_rad);
@@ -162,10 +161,9 @@ TEST(Sun, AtAPoleElevationIsOneAndAzimuthsFollowTheLongitude) {
 TEST(Sun, Longitudes180AndMinus180AreIdentical) {
   for (const double latitude : {-90.0, -16.5, 0.0, 65.0, 90.0}) {
     const UtcTime instant = ParseInstant("2026-02-11T20:17:00Z");
-    const SunPosition east = SunAt(PlaceFromDegrees(latitude, 180.0, 10.0), instant);
-    for (const GeodeticPosition& place :
-         {PlaceFromDegrees(latitude, -180.0, 10.0),
-          GeodeticPosition{latitude * kRadiansPerDegree, -kPi, 10.0}}) {
+    const SunPosition east = SunAt(CheckedPlace({latitude, 180.0, 10.0}), instant);
+    for (const Place& place : {CheckedPlace({latitude, -180.0, 10.0}),
+                               PlaceFromRadians(latitude * kRadiansPerDegree, -kPi, 10.0)}) {
       const SunPosition west = SunAt(place, instant);
       EXPECT_EQ(east.elevation_rad, west.elevation_rad);
       EXPECT_EQ(east.azimuth_rad, west.azimuth_rad);
@@ -178,7 +176,7 @@ TEST(Sun, Longitudes180AndMinus180AreIdentical) {
 // Hard case 25.
 TEST(Sun, ALeapSecondMovesItNoFurtherThanAnyOther) {
   const auto moves = [](const char* from, const char* to) {
-    return MotionOfSun(PlaceFromDegrees(-33.9, 151.2, 0.0), ParseInstant(from), ParseInstant(to));
+    return MotionOfSun(Place{-33.9, 151.2, 0.0}, ParseInstant(from), ParseInstant(to));
   };
   const char* last = "2016-12-31T23:59:59Z";
   const char* leap = "2016-12-31T23:59:60Z";
@@ -191,7 +189,7 @@ TEST(Sun, ALeapSecondMovesItNoFurtherThanAnyOther) {
 }
 
 TEST(Sun, MovesSteadilyInYearsThatErfaCallsDubious) {
-  const GeodeticPosition place = PlaceFromDegrees(35.5, 138.8, 900.0);
+  const Place place{35.5, 138.8, 900.0};
   for (const char* text : {"1900-01-01T00:00:00Z", "1959-12-31T23:59:59Z", "2026-12-31T23:59:59Z",
                            "2100-12-31T23:59:58Z"}) {
     const UtcTime instant = ParseInstant(text);
@@ -202,7 +200,7 @@ TEST(Sun, MovesSteadilyInYearsThatErfaCallsDubious) {
 
 TEST(Sun, FollowsTheRotationOfTheEarthNotOnlyTheClock) {
   // A second of delta-T moves the ephemeris, not the clock: 0.04 arcseconds, not 15.
-  const GeodeticPosition place = PlaceFromDegrees(10.0, 20.0, 0.0);
+  const Place place{10.0, 20.0, 0.0};
   const UtcTime instant = ParseInstant("2026-06-21T12:00:00Z");
   EXPECT_LT(Separation(DirectionTo(SunAt(place, instant, 69.0)),
                        DirectionTo(SunAt(place, instant, 70.0))) /
@@ -211,7 +209,7 @@ TEST(Sun, FollowsTheRotationOfTheEarthNotOnlyTheClock) {
 }
 
 TEST(Sun, ClimbsUntilNoonAndSinksAfterwards) {
-  const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 2000.0);
+  const Place place{46.5, 8.0, 2000.0};
   const UtcTime noon =
       FindSunEvent(SunEvent::kNoon, place, ParseInstant("2026-04-18T12:00:00Z")).value();
   const auto elevation = [&](double time_s) {
@@ -346,7 +344,7 @@ struct PublishedEvent {
 };
 
 /// Expects events to happen when an almanac says.
-void ExpectEvents(const GeodeticPosition& place, const std::vector<PublishedEvent>& published,
+void ExpectEvents(const Place& place, const std::vector<PublishedEvent>& published,
                   double tolerance_s, const char* why) {
   for (const auto& [event, time] : published) {
     const UtcTime expected = ParseInstant(time);
@@ -359,7 +357,7 @@ void ExpectEvents(const GeodeticPosition& place, const std::vector<PublishedEven
 // United States Naval Observatory, "Sun and Moon data for one day", Atlanta, 6 September 2009, at
 // 33.8 N 84.4 W; quoted in the manual of PyEphem, "Rising, Transit, Setting".
 TEST(SunEvents, AtlantaIsAsTheNavalObservatoryPrintsIt) {
-  ExpectEvents(PlaceFromDegrees(33.8, -84.4, 0.0),
+  ExpectEvents(Place{33.8, -84.4, 0.0},
                {{SunEvent::kCivilDawn, "2009-09-06T06:50:00-04:00"},
                 {SunEvent::kSunrise, "2009-09-06T07:15:00-04:00"},
                 {SunEvent::kNoon, "2009-09-06T13:36:00-04:00"},
@@ -370,7 +368,7 @@ TEST(SunEvents, AtlantaIsAsTheNavalObservatoryPrintsIt) {
 
 // Skyfield with JPL DE421, its manual, "Almanac Computation"; the sun's radius is 16' there.
 TEST(SunEvents, BlufftonIsAsTheJplEphemerisSays) {
-  const GeodeticPosition bluffton = PlaceFromDegrees(40.8939, -83.8917, 0.0);
+  const Place bluffton{40.8939, -83.8917, 0.0};
   ExpectEvents(bluffton,
                {{SunEvent::kAstronomicalDawn, "2019-11-08T10:40:19Z"},
                 {SunEvent::kNauticalDawn, "2019-11-08T11:12:31Z"},
@@ -387,9 +385,8 @@ TEST(SunEvents, BlufftonIsAsTheJplEphemerisSays) {
 
 TEST(SunEvents, NoonOfTheSpaExampleIsItsTransit) {
   // Reda and Andreas (2004), table A5.1: transit 18:46:04.97 UT.
-  ExpectEvents(PlaceFromDegrees(39.742476, -105.1786, 1830.14),
-               {{SunEvent::kNoon, "2003-10-17T18:46:04.97Z"}}, 0.5,
-               "their transit is interpolated between days");
+  ExpectEvents(Place{39.742476, -105.1786, 1830.14}, {{SunEvent::kNoon, "2003-10-17T18:46:04.97Z"}},
+               0.5, "their transit is interpolated between days");
 }
 
 TEST(SunEvents, FollowEachOtherThroughTheDay) {
@@ -397,7 +394,7 @@ TEST(SunEvents, FollowEachOtherThroughTheDay) {
        {std::pair{-47.0, -180.0}, {-20.0, 138.0}, {0.0, 0.0}, {20.0, -100.0}, {47.0, 8.0}}) {
     for (const char* day :
          {"2026-03-20T12:00:00Z", "2026-06-21T00:00:00Z", "2026-12-21T23:59:59Z"}) {
-      const GeodeticPosition place = PlaceFromDegrees(latitude, longitude, 300.0);
+      const Place place = CheckedPlace({latitude, longitude, 300.0});
       std::optional<UtcTime> before;
       for (const SunEvent event : kInOrder) {
         const std::optional<UtcTime> found = FindSunEvent(event, place, ParseInstant(day));
@@ -410,7 +407,7 @@ TEST(SunEvents, FollowEachOtherThroughTheDay) {
 }
 
 TEST(SunEvents, EveryInstantOfASolarDayFindsTheSameEvents) {
-  const GeodeticPosition place = PlaceFromDegrees(35.36, 138.73, 0.0);  // 9 h 15 min before UTC
+  const Place place{35.36, 138.73, 0.0};  // 9 h 15 min before UTC
   const auto sunrise = [&](const char* around) {
     return FindSunEvent(SunEvent::kSunrise, place, ParseInstant(around)).value();
   };
@@ -426,8 +423,8 @@ TEST(SunEvents, EveryInstantOfASolarDayFindsTheSameEvents) {
 
 TEST(SunEvents, SearchIsWithinATenthOfASecond) {
   for (const double latitude : {0.0, 51.0, 66.0}) {
-    const GeodeticPosition place = PlaceFromDegrees(latitude, 25.0, 900.0);
-    const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad);
+    const Place place = CheckedPlace({latitude, 25.0, 900.0});
+    const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad());
     const double target = SeaHorizonFrom(place.height_m, radius_m).true_elevation_rad;
     const UtcTime found =
         FindSunEvent(SunEvent::kSunrise, place, ParseInstant("2026-03-01T12:00:00Z")).value();
@@ -441,12 +438,12 @@ TEST(SunEvents, SearchIsWithinATenthOfASecond) {
 }
 
 TEST(SunEvents, AtSunriseTheUpperLimbIsSeenOnTheSea) {
-  const GeodeticPosition place = PlaceFromDegrees(35.36, 138.73, 3776.0);
+  const Place place{35.36, 138.73, 3776.0};
   const UtcTime sunrise =
       FindSunEvent(SunEvent::kSunrise, place, ParseInstant("2026-01-01T00:00:00Z")).value();
   const SunPosition sun = SunAt(place, sunrise);
   const double limb = sun.elevation_rad + sun.angular_radius_rad;
-  const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad);
+  const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad());
   EXPECT_NEAR(limb + RefractionFromHeight(AlmanacAir(radius_m), limb, place.height_m),
               -SeaHorizonFrom(place.height_m, radius_m).dip_rad, 1e-6)
       << "0.01 s of the search are 7e-7";
@@ -455,7 +452,7 @@ TEST(SunEvents, AtSunriseTheUpperLimbIsSeenOnTheSea) {
 TEST(SunEvents, TheSunRisesEarlierOnASummit) {
   const auto earlier_s = [&](double height) {
     const auto sunrise = [&](double height_m) {
-      return FindSunEvent(SunEvent::kSunrise, PlaceFromDegrees(0.0, 0.0, height_m),
+      return FindSunEvent(SunEvent::kSunrise, CheckedPlace({0.0, 0.0, height_m}),
                           ParseInstant("2026-03-20T12:00:00Z"))
           .value();
     };
@@ -467,7 +464,7 @@ TEST(SunEvents, TheSunRisesEarlierOnASummit) {
 }
 
 bool Happens(SunEvent event, double latitude, double longitude, const char* day) {
-  return FindSunEvent(event, PlaceFromDegrees(latitude, longitude, 0.0), ParseInstant(day))
+  return FindSunEvent(event, CheckedPlace({latitude, longitude, 0.0}), ParseInstant(day))
       .has_value();
 }
 
@@ -511,7 +508,7 @@ TEST(SunEvents, AtThePolesTheSunRisesOnceAYear) {
     int sunrises = 0, sunsets = 0;
     for (int day = 0; day < 16; ++day) {  // 12 to 27 March
       const UtcTime around = AddSeconds(ParseInstant("2026-03-12T12:00:00Z"), 86400.0 * day);
-      const GeodeticPosition pole = PlaceFromDegrees(latitude, 0.0, 0.0);
+      const Place pole = CheckedPlace({latitude, 0.0, 0.0});
       sunrises += FindSunEvent(SunEvent::kSunrise, pole, around).has_value() ? 1 : 0;
       sunsets += FindSunEvent(SunEvent::kSunset, pole, around).has_value() ? 1 : 0;
     }
@@ -524,7 +521,7 @@ TEST(SunEvents, AtThePolesTheSunRisesOnceAYear) {
 // three hours about midnight, where the sun is near the horizon, and every ten minutes otherwise.
 // Hard case 24.
 TEST(SunEvents, AroundTheMidnightSunNothingIsMissedOrInvented) {
-  const GeodeticPosition place = PlaceFromDegrees(69.65, 0.0, 0.0);
+  const Place place{69.65, 0.0, 0.0};
   const double target = SeaHorizonFrom(0.0).true_elevation_rad;
   int days_with = 0;
   constexpr int kDays = 8;
@@ -555,14 +552,14 @@ TEST(SunEvents, AroundTheMidnightSunNothingIsMissedOrInvented) {
 TEST(SunEvents, Longitudes180AndMinus180AreIdentical) {
   const UtcTime around = ParseInstant("2026-06-21T12:00:00Z");
   for (const SunEvent event : kInOrder) {
-    const auto east = FindSunEvent(event, PlaceFromDegrees(-16.5, 180.0, 0.0), around);
-    EXPECT_EQ(east, FindSunEvent(event, PlaceFromDegrees(-16.5, -180.0, 0.0), around));
+    const auto east = FindSunEvent(event, Place{-16.5, 180.0, 0.0}, around);
+    EXPECT_EQ(east, FindSunEvent(event, CheckedPlace({-16.5, -180.0, 0.0}), around));
     EXPECT_EQ(east, FindSunEvent(event, {-16.5 * kRadiansPerDegree, -kPi, 0.0}, around));
   }
 }
 
 TEST(SunEvents, NoonsAreADayApartUpToTheEquationOfTime) {
-  const GeodeticPosition place = PlaceFromDegrees(51.48, 0.0, 0.0);
+  const Place place{51.48, 0.0, 0.0};
   double earliest_s = 86400.0, latest_s = 0.0;
   for (int day = 0; day < 365; day += 5) {
     const UtcTime around = AddSeconds(ParseInstant("2026-01-01T12:00:00Z"), 86400.0 * day);

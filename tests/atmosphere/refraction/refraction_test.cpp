@@ -289,7 +289,7 @@ TEST(Refraction, FromAnyHeightItIsContinuousAndKeepsTheOrder) {
 TEST(ApparentSun, IsHigherThanTheSunByRefractionAtTheEye) {
   const UtcTime evening = ParseInstant("2026-06-21T18:50:00Z");
   for (const double height_m : {0.0, 10e3}) {
-    const GeodeticPosition eye = PlaceFromDegrees(47.0, 8.0, height_m);
+    const Place eye = CheckedPlace({47.0, 8.0, height_m});
     const SunPosition sun = SunAt(eye, evening), apparent = ApparentSunAt(eye, evening);
     EXPECT_EQ(apparent.elevation_rad,
               sun.elevation_rad + AlmanacRefraction(sun.elevation_rad, height_m));
@@ -409,7 +409,7 @@ TEST(LiftForAir, IsNothingWithoutAir) {
 
 TEST(SunForAir, IsRaisedByTheLiftForAirAtAnyHeight) {
   for (const double height_m : {0.0, 3000.0, 11000.0, 400e3}) {
-    const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, height_m);
+    const Place eye = CheckedPlace({46.5, 8.0, height_m});
     for (const char* time :
          {"2026-06-21T11:00:00Z", "2026-06-21T19:22:00Z", "2026-06-21T20:20:00Z"}) {
       const UtcTime now = ParseInstant(time);

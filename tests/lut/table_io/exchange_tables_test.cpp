@@ -42,7 +42,7 @@ const double kHorizon_km = std::sqrt(kTop_km * kTop_km - kPlanet_km * kPlanet_km
 constexpr std::array<double, 3> kSun{1.474, 1.8504, 1.91198};  // red, green, blue
 
 /// The place of a texel of a scattering texture.
-struct Place {
+struct TexelPosition {
   double altitude_m, mu, mu_s, nu;
 };
 
@@ -52,11 +52,11 @@ double CosineOfDistance(double distance, double from_squared, double to_squared,
 }
 
 /// Returns the place of a texel, where x = nu * 32 + mu_s; y < 64 hits the ground.
-Place PlaceOf(int x, int y, int z, double mu_s_min) {
+TexelPosition PlaceOf(int x, int y, int z, double mu_s_min) {
   const double H = kHorizon_km, rb = kPlanet_km, rt = kTop_km;
   const double rho = H * z / 31.0;
   const double r = std::sqrt(rho * rho + rb * rb);
-  Place place{};
+  TexelPosition place{};
   place.altitude_m = (r - rb) * 1000.0;
   if (y < 64) {
     const double d = (r - rb) + (63 - y) / 63.0 * (rho - (r - rb));
@@ -297,7 +297,7 @@ Medium WithAndWithoutHazeLight(const Medium& air) {
 struct Once {
   Rgba molecules, aerosol;
 };
-Once ReferenceOnce(const Medium& both, const Place& place) {
+Once ReferenceOnce(const Medium& both, const TexelPosition& place) {
   const ViewRay ray{place.altitude_m, place.mu, place.mu_s, place.nu};
   const std::vector<double> light = reference::SingleScatteringAlong(both, ray).inscatter;
   const double nu = place.nu, g = 0.8;
@@ -333,7 +333,7 @@ TEST_F(TakramSet, LightScatteredOnceIsThatOfTheReference) {
   for (int i = 0; i < tests::ScaledDown(100, 30); ++i) {
     const auto x = static_cast<int>(random() % 256), y = static_cast<int>(random() % 128);
     const auto z = static_cast<int>(random() % 32);
-    const Place place = PlaceOf(x, y, z, -0.5);
+    const TexelPosition place = PlaceOf(x, y, z, -0.5);
     const auto at = [&](const Raw& file) {
       return file.At(static_cast<std::size_t>(x), static_cast<std::size_t>(y),
                      static_cast<std::size_t>(z));
@@ -367,7 +367,7 @@ TEST_F(TakramSet, HigherOrdersAreThoseOfPathsOfFourEvents) {
   const double pi = std::acos(-1.0);
   constexpr double kError = tests::ScaledDown(2e-3, 1e-2);
   for (const auto& [x, y, z] : {std::array{5 * 32 + 26, 80, 2}, {6 * 32 + 29, 115, 0}}) {
-    const Place place = PlaceOf(x, y, z, -0.5);
+    const TexelPosition place = PlaceOf(x, y, z, -0.5);
     const ViewRay ray{place.altitude_m, place.mu, place.mu_s, place.nu};
     const auto paths =
         reference::TraceRadiance(air_, ray, {.relative_error = kError, .max_order = 4});

@@ -30,7 +30,7 @@ TEST_F(ApiScene, IsRenderedAsByTheLayerBelow) {
   const Scene sea(Sea());
   const HdrImage still = sea.Render(time, kSmall);
   renderer::Scene scene;
-  scene.place = atmosphere::PlaceFromDegrees(46.5, 8.0, 0.0);
+  scene.place = {46.5, 8.0, 0.0};
   scene.camera = renderer::CameraFromDegrees({300.0, false}, 0.0, -5.0, 0.0, 60.0);
   scene.medium = atmosphere::MediumPreset("earth");
   scene.terrain.kind = renderer::TerrainSource::Kind::kNone;

@@ -28,7 +28,7 @@ CameraPathPoint PointAt(double time_s, double latitude, double longitude, double
                         double heading, double pitch = 0.0) {
   CameraPathPoint point;
   point.time_s = time_s;
-  point.pose.place = PlaceFromDegrees(latitude, longitude, height_m);
+  point.pose.place = CheckedPlace({latitude, longitude, height_m});
   point.pose.heading_rad = heading * kRadiansPerDegree;
   point.pose.pitch_rad = pitch * kRadiansPerDegree;
   return point;
@@ -40,16 +40,14 @@ CameraPath Loop() {
                      PointAt(11.0, 46.5, 8.3, 1500.0, 200.0, -20.0)});
 }
 
-glm::dvec3 Ecef(const GeodeticPosition& place) { return EcefFromGeodetic(kWgs84, place).xyz; }
-double Apart(const GeodeticPosition& a, const GeodeticPosition& b) {
-  return glm::length(Ecef(a) - Ecef(b));
-}
+glm::dvec3 Ecef(const Place& place) { return EcefFromGeodetic(kWgs84, place).xyz; }
+double Apart(const Place& a, const Place& b) { return glm::length(Ecef(a) - Ecef(b)); }
 double DegreesOf(double radians) { return radians / kRadiansPerDegree; }
 
 TEST(CameraPath, GoesThroughItsPointsAndStandsBeforeAndAfter) {
   const CameraPath path = Loop();
   for (const CameraPathPoint& point : path.points()) {
-    EXPECT_EQ(path.PoseAt(point.time_s).place.latitude_rad, point.pose.place.latitude_rad);
+    EXPECT_EQ(path.PoseAt(point.time_s).place.latitude_rad(), point.pose.place.latitude_rad());
     EXPECT_EQ(path.PoseAt(point.time_s).heading_rad, point.pose.heading_rad);
   }
   EXPECT_EQ(path.PoseAt(-3.0).place.height_m, 2000.0);
@@ -63,7 +61,7 @@ TEST(CameraPath, BetweenOppositePointsThereIsNoWay) {
               }),
               HasSubstr("points 2 and 3 of the camera path are on opposite sides"));
   const CameraPath nearly({PointAt(0.0, 0.0, 0.0, 0.0, 0.0), PointAt(1.0, 0.01, 180.0, 0.0, 0.0)});
-  EXPECT_TRUE(std::isfinite(nearly.PoseAt(0.5).place.latitude_rad));
+  EXPECT_TRUE(std::isfinite(nearly.PoseAt(0.5).place.latitude_rad()));
 }
 
 TEST(CameraPath, SpeedHasNoJumps) {
@@ -126,8 +124,7 @@ TEST(CameraPath, StaysBetweenItsTwoPointsOnAStraightWay) {
     const double whole = std::remainder(longitudes[i + 1] - longitudes[i], 360.0);
     for (double share = 0.05; share < 1.0; share += 0.05) {
       const double t = times_s[i] + share * (times_s[i + 1] - times_s[i]);
-      const double gone = std::remainder(
-          path.PoseAt(t).place.longitude_rad / kRadiansPerDegree - longitudes[i], 360.0);
+      const double gone = std::remainder(path.PoseAt(t).place.longitude_deg - longitudes[i], 360.0);
       EXPECT_GE(gone / whole, -1e-9) << t;
       EXPECT_LE(gone / whole, 1.0 + 1e-9) << t;
     }
@@ -200,7 +197,7 @@ TEST_F(CameraPathFiles, ColumnsMayHaveAnyOrderAndSomeMayBeMissing) {
       "turn\n",
       otherwise);
   ASSERT_EQ(path.points().size(), 2U);
-  EXPECT_NEAR(path.points()[1].pose.place.longitude_rad, 8.1 * kRadiansPerDegree, 1e-12);
+  EXPECT_NEAR(path.points()[1].pose.place.longitude_rad(), 8.1 * kRadiansPerDegree, 1e-12);
   EXPECT_NEAR(path.points()[1].pose.pitch_rad, -0.25, 1e-12);
 }
 
@@ -222,16 +219,16 @@ TEST_F(CameraPathFiles, AFaultIsReportedWithItsLine) {
 
 constexpr double kG = 9.80665;
 
-double Sea(const GeodeticPosition&) { return 0.0; }
+double Sea(const Place&) { return 0.0; }
 
 /// Returns a circle of 3 km around 46 N 8 E, clockwise from its south, with a point every 10
 /// degrees.
 Track Circle() {
   Track track;
-  const LocalFrame frame(kWgs84, PlaceFromDegrees(46.0, 8.0, 1000.0));
+  const LocalFrame frame(kWgs84, Place{46.0, 8.0, 1000.0});
   for (int i = 0; i <= 36; ++i) {
     const double angle = (180.0 + 10.0 * i) * kRadiansPerDegree;
-    GeodeticPosition place = frame.GeodeticFromEnu(
+    Place place = frame.GeodeticFromEnu(
         Point<Enu>{{3000.0 * std::sin(angle), 3000.0 * std::cos(angle), 0.0}});
     place.height_m = 1000.0;
     track.points.push_back({place});
@@ -274,35 +271,34 @@ TEST(TrackPath, TimesOfTheTrackAreKept) {
   Track track;
   for (int i = 0; i < 5; ++i) {
     track.points.push_back(
-        {PlaceFromDegrees(46.0 + 0.01 * i * i, 8.0, 1000.0), AddSeconds(kStart, 60.0 * i)});
+        {CheckedPlace({46.0 + 0.01 * i * i, 8.0, 1000.0}), AddSeconds(kStart, 60.0 * i)});
   }
   track.points.push_back(track.points.back());  // a receiver that says the same thing twice
   const CameraPath path = PathAlong(track, {}, Sea);
   EXPECT_EQ(path.end_s(), 240.0);
-  EXPECT_NEAR(DegreesOf(path.PoseAt(120.0).place.latitude_rad), 46.04, 1e-6);
+  EXPECT_NEAR(DegreesOf(path.PoseAt(120.0).place.latitude_rad()), 46.04, 1e-6);
   EXPECT_NEAR(SecondsBetween(kStart, *path.UtcAt(90.0)), 90.0, 1e-6);
 }
 
 TEST(TrackPath, TimesOfOnlySomePointsAreNotUsed) {
   Track track;
-  track.points.push_back(
-      {PlaceFromDegrees(46.0, 8.0, 1000.0), ParseInstant("2026-06-21T04:00:00Z")});
-  track.points.push_back({PlaceFromDegrees(46.1, 8.0, 1000.0)});
+  track.points.push_back({Place{46.0, 8.0, 1000.0}, ParseInstant("2026-06-21T04:00:00Z")});
+  track.points.push_back({Place{46.1, 8.0, 1000.0}});
   const CameraPath path = PathAlong(track, {.speed_m_per_s = 100.0}, Sea);
   EXPECT_NEAR(path.end_s(), 111.0, 1.0) << "a tenth of a degree is 11.1 km";
   EXPECT_FALSE(path.UtcAt(0.0));
 }
 
 TEST(TrackPath, ATrackWithoutHeightsFollowsTheGround) {
-  const GroundHeight hills = [](const GeodeticPosition& place) {
-    return 800.0 + 300.0 * std::sin(place.latitude_rad * 6.37e6 / 2000.0);
+  const GroundHeight hills = [](const Place& place) {
+    return 800.0 + 300.0 * std::sin(place.latitude_rad() * 6.37e6 / 2000.0);
   };
   Track track;
   track.heights = TrackHeights::kOnGround;
-  track.points = {{PlaceFromDegrees(46.0, 8.0, 0.0)}, {PlaceFromDegrees(46.1, 8.0, 0.0)}};
+  track.points = {{Place{46.0, 8.0, 0.0}}, {Place{46.1, 8.0, 0.0}}};
   const CameraPath path = PathAlong(track, {.over_ground_m = 150.0}, hills);
   for (double t = 0.0; t <= path.end_s(); t += 1.0) {
-    const GeodeticPosition place = path.PoseAt(t).place;
+    const Place place = path.PoseAt(t).place;
     EXPECT_NEAR(place.height_m - hills(place), 150.0, 60.0);
     EXPECT_GT(place.height_m - hills(place), 74.0);
   }
@@ -318,7 +314,7 @@ Track Eastward(const std::vector<std::pair<double, double>>& points) {
   Track track;
   const UtcTime start = ParseInstant("2026-06-21T10:00:00Z");
   for (const auto& [longitude, time_s] : points)
-    track.points.push_back({PlaceFromDegrees(0.0, longitude, 3500.0), AddSeconds(start, time_s)});
+    track.points.push_back({CheckedPlace({0.0, longitude, 3500.0}), AddSeconds(start, time_s)});
   return track;
 }
 
@@ -342,8 +338,8 @@ TEST(TrackPath, APauseIsSpentBetweenTheAdjacentPoints) {
     const std::size_t last = points.size() / 2 - 1;  // before the pause
     for (double t = points[last].second; t <= points[last + 1].second; t += 7.3) {
       const CameraPose pose = path.PoseAt(t);
-      EXPECT_GE(DegreesOf(pose.place.longitude_rad), points[last].first - 1e-9) << t;
-      EXPECT_LE(DegreesOf(pose.place.longitude_rad), points[last + 1].first + 1e-9) << t;
+      EXPECT_GE(DegreesOf(pose.place.longitude_rad()), points[last].first - 1e-9) << t;
+      EXPECT_LE(DegreesOf(pose.place.longitude_rad()), points[last + 1].first + 1e-9) << t;
       EXPECT_NEAR(DegreesOf(pose.heading_rad), 90.0, 0.01) << t << ": the heading is kept";
     }
   }
@@ -355,7 +351,7 @@ TEST(TrackPath, SparseFixesArePassedOnceAndAtTheirTimes) {
   for (std::size_t i = 1; i < points.size(); ++i) {
     for (double share = 0.0; share <= 1.0; share += 0.125) {
       const double t = points[i - 1].second + share * (points[i].second - points[i - 1].second);
-      const double longitude = DegreesOf(path.PoseAt(t).place.longitude_rad);
+      const double longitude = DegreesOf(path.PoseAt(t).place.longitude_rad());
       EXPECT_GE(longitude, points[i - 1].first - 1e-7) << t;
       EXPECT_LE(longitude, points[i].first + 1e-7) << t;
     }
@@ -365,22 +361,22 @@ TEST(TrackPath, SparseFixesArePassedOnceAndAtTheirTimes) {
 TEST(TrackPath, GoesStraightAndEvenlyThroughAGap) {
   Track track = Eastward({{8.0, 0.0}, {8.01, 60.0}, {8.02, 120.0}});
   const UtcTime later = AddSeconds(*track.points[0].utc, 1120.0);
-  track.points.push_back({PlaceFromDegrees(0.1, 8.02, 3500.0), later, 1});
-  track.points.push_back({PlaceFromDegrees(0.1, 8.01, 3500.0), AddSeconds(later, 60.0), 1});
+  track.points.push_back({Place{0.1, 8.02, 3500.0}, later, 1});
+  track.points.push_back({Place{0.1, 8.01, 3500.0}, AddSeconds(later, 60.0), 1});
   const CameraPath path = PathAlong(track, {}, Sea);
   for (const double t : {130.0, 370.0, 620.0, 870.0, 1110.0}) {
-    const GeodeticPosition place = path.PoseAt(t).place;
-    EXPECT_NEAR(DegreesOf(place.longitude_rad), 8.02, 2e-6) << t;
-    EXPECT_NEAR(DegreesOf(place.latitude_rad), 1e-4 * (t - 120.0), 2e-6) << t;
+    const Place place = path.PoseAt(t).place;
+    EXPECT_NEAR(DegreesOf(place.longitude_rad()), 8.02, 2e-6) << t;
+    EXPECT_NEAR(DegreesOf(place.latitude_rad()), 1e-4 * (t - 120.0), 2e-6) << t;
   }
 }
 
 /// Adds five minutes on a circle of 120 m, a point each second, 20 s a turn.
 void AddCircling(double begin_s, int segment, Track& track) {
-  const LocalFrame frame(kWgs84, PlaceFromDegrees(46.5, 8.0, 0.0));
+  const LocalFrame frame(kWgs84, Place{46.5, 8.0, 0.0});
   for (int i = 0; i < 300; ++i) {
     const double angle = 18.0 * i * kRadiansPerDegree;
-    GeodeticPosition place =
+    Place place =
         frame.GeodeticFromEnu(Point<Enu>{{120.0 * std::sin(angle), 120.0 * std::cos(angle), 0.0}});
     place.height_m = 2000.0 + 2.0 * i;
     track.points.push_back({place, AddSeconds(kStart, begin_s + i), segment});
@@ -396,14 +392,14 @@ TEST(TrackPath, DaysWithoutDataDoNotCoarsenTheFlights) {
     AddCircling(0.0, 0, alone);
     const CameraPath path = PathAlong(track, {}, Sea), flight = PathAlong(alone, {}, Sea);
     EXPECT_LT(path.points().size(), 2000U) << "not a point for each second of a week";
-    const LocalFrame frame(kWgs84, PlaceFromDegrees(46.5, 8.0, 0.0));
+    const LocalFrame frame(kWgs84, Place{46.5, 8.0, 0.0});
     for (double t = 0.0; t <= 299.0; t += 0.7) {
       for (const double begin_s : {0.0, 7.0 * 86400.0}) {
         const CameraPose pose = path.PoseAt(begin_s + t), single = flight.PoseAt(t);
         EXPECT_LT(Apart(pose.place, single.place), 0.5) << begin_s + t;
         EXPECT_NEAR(std::remainder(pose.heading_rad - single.heading_rad, 2.0 * kPi), 0.0, 0.02)
             << begin_s + t;
-        GeodeticPosition level = pose.place;
+        Place level = pose.place;
         level.height_m = 0.0;
         EXPECT_NEAR(glm::length(frame.EnuFromGeodetic(level).xyz), 120.0, 4.0)
             << "a smoothed curve through points 38 m apart";
@@ -418,7 +414,7 @@ TEST(TrackPath, LongTracksKeepTheRecordedRateInBoundedMemory) {
   for (int i = 0; i < 4500; ++i) {
     const double east_deg = i % 2 == 0 ? 1e-3 : -1e-3;  // every point is a corner
     track.points.push_back(
-        {PlaceFromDegrees(46.0 + 1e-4 * i, 8.0 + east_deg, 1000.0), AddSeconds(kStart, 60.0 * i)});
+        {CheckedPlace({46.0 + 1e-4 * i, 8.0 + east_deg, 1000.0}), AddSeconds(kStart, 60.0 * i)});
   }
   const CameraPath path = PathAlong(track, {}, Sea);
   EXPECT_LE(path.points().size(), 200010U);
@@ -434,8 +430,8 @@ TEST(TrackPath, LooksAheadBeforeItMoves) {
 
 TEST(TrackPath, LooksUpTheSlopeAndLevelWhenItStands) {
   Track track;
-  const GeodeticPosition low = PlaceFromDegrees(46.0, 8.0, 1000.0);
-  const GeodeticPosition high = PlaceFromDegrees(46.0, 8.01, 1077.5);  // 774.6 m to the east
+  const Place low{46.0, 8.0, 1000.0};
+  const Place high{46.0, 8.01, 1077.5};  // 774.6 m to the east
   track.points = {
       {low, kStart}, {high, AddSeconds(kStart, 60.0)}, {high, AddSeconds(kStart, 120.0)}};
   const CameraPath path = PathAlong(track, {}, Sea);
@@ -451,7 +447,7 @@ TEST(TrackPath, JitterOfTheReceiverHardlyTurnsTheCamera) {
   for (int i = 0; i < 120; ++i) {
     const double jitter = (i % 2 == 0 ? 1.0 : -1.0) * 2e-5;  // 1.5 m to the sides
     track.points.push_back(
-        {PlaceFromDegrees(46.0 + 3e-4 * i, 8.0 + jitter, 1000.0), AddSeconds(kStart, i)});
+        {CheckedPlace({46.0 + 3e-4 * i, 8.0 + jitter, 1000.0}), AddSeconds(kStart, i)});
   }
   const CameraPath path = PathAlong(track, {}, Sea);
   for (double t = 5.0; t < 110.0; t += 0.5) {
@@ -465,7 +461,7 @@ TEST(TrackPath, SpeedIsSteadyWhenFixesRunAheadAndLagBehind) {
   for (int i = 0; i < 120; ++i) {
     const double ahead = i % 2 == 0 ? 1.0 : -1.0;  // 10 m of the 60 m in a second
     track.points.push_back(
-        {PlaceFromDegrees(46.0 + (60.0 * i + 10.0 * ahead) / 111150.0, 8.0, 1000.0),
+        {CheckedPlace({46.0 + (60.0 * i + 10.0 * ahead) / 111150.0, 8.0, 1000.0}),
          AddSeconds(kStart, i)});
   }
   const CameraPath path = PathAlong(track, {}, Sea);
@@ -482,18 +478,18 @@ TEST(TrackPath, SmoothingKeepsAnEvenAcceleration) {
   const auto way_m = [](double t) { return 20.0 * t + 0.5 * t * t; };
   for (int i = 0; i <= 100; ++i) {
     track.points.push_back(
-        {PlaceFromDegrees(0.0, way_m(i) / 111319.49079, 1000.0 + 0.0 * i), AddSeconds(kStart, i)});
+        {CheckedPlace({0.0, way_m(i) / 111319.49079, 1000.0 + 0.0 * i}), AddSeconds(kStart, i)});
   }
   const CameraPath path = PathAlong(track, {}, Sea);
   for (double t = 0.0; t <= 100.0; t += 10.0) {
-    EXPECT_NEAR(DegreesOf(path.PoseAt(t).place.longitude_rad) * 111319.49079, way_m(t), 0.05)
+    EXPECT_NEAR(DegreesOf(path.PoseAt(t).place.longitude_rad()) * 111319.49079, way_m(t), 0.05)
         << t << ": the way between points is taken as straight, and as even";
   }
 }
 
 TEST(TrackPath, WingsRollIntoATurnAndOutOfItWithoutAJump) {
   Track track;  // north for 3 km, a quarter of a circle of 1 km, east for 3 km
-  const LocalFrame frame(kWgs84, PlaceFromDegrees(46.0, 8.0, 1000.0));
+  const LocalFrame frame(kWgs84, Place{46.0, 8.0, 1000.0});
   const auto add = [&](double east_m, double north_m) {
     track.points.push_back({frame.GeodeticFromEnu(Point<Enu>{{east_m, north_m, 0.0}})});
     track.points.back().place.height_m = 1000.0;
@@ -518,11 +514,10 @@ TEST(TrackPath, WingsRollIntoATurnAndOutOfItWithoutAJump) {
 TEST(CameraPath, GoesTheShortWayAcrossTheDateLine) {
   const CameraPath near(
       {PointAt(0.0, 10.0, 179.9, 100.0, 90.0), PointAt(1.0, 10.0, -179.9, 100.0, 90.0)});
-  EXPECT_NEAR(std::abs(DegreesOf(near.PoseAt(0.5).place.longitude_rad)), 180.0, 1e-9);
-  EXPECT_NEAR(DegreesOf(near.PoseAt(0.5).place.latitude_rad), 10.0, 1e-4);
+  EXPECT_NEAR(std::abs(DegreesOf(near.PoseAt(0.5).place.longitude_rad())), 180.0, 1e-9);
+  EXPECT_NEAR(DegreesOf(near.PoseAt(0.5).place.latitude_rad()), 10.0, 1e-4);
   Track track;
-  track.points = {{PlaceFromDegrees(10.0, 179.9, 1000.0)},
-                  {PlaceFromDegrees(10.0, -179.9, 1000.0)}};
+  track.points = {{Place{10.0, 179.9, 1000.0}}, {Place{10.0, -179.9, 1000.0}}};
   const CameraPath path = PathAlong(track, {.speed_m_per_s = 100.0}, Sea);
   EXPECT_NEAR(path.end_s(), 219.0, 2.0) << "0.2 degrees at 10 degrees north are 21.9 km";
   EXPECT_NEAR(DegreesOf(path.PoseAt(0.5 * path.end_s()).heading_rad), 90.0, 0.1);
@@ -571,7 +566,7 @@ TEST(TrackPath, ATrackThatGoesNowhereIsRefused) {
   };
   Track track;
   EXPECT_THAT(fault(track), HasSubstr("fewer than two points"));
-  track.points.assign(10, {PlaceFromDegrees(46.0, 8.0, 0.0)});
+  track.points.assign(10, {Place{46.0, 8.0, 0.0}});
   track.file = "still.gpx";
   EXPECT_THAT(fault(track), HasSubstr("still.gpx: the track has fewer than two points apart"));
   EXPECT_THAT(

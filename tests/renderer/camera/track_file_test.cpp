@@ -57,8 +57,8 @@ TEST_F(TrackFile, AllSegmentsOfAGpxTrackAreReadInOrder) {
   EXPECT_EQ(track.name, "Over the pass");
   EXPECT_EQ(track.heights, TrackHeights::kSea);
   ASSERT_EQ(track.points.size(), 3U);
-  EXPECT_NEAR(Degrees(track.points[1].place.latitude_rad), 46.51, 1e-12);
-  EXPECT_NEAR(Degrees(track.points[1].place.longitude_rad), 8.01, 1e-12);
+  EXPECT_NEAR(track.points[1].place.latitude_deg, 46.51, 1e-12);
+  EXPECT_NEAR(track.points[1].place.longitude_deg, 8.01, 1e-12);
   EXPECT_EQ(track.points[0].place.height_m, 2000.5);
   EXPECT_EQ(FormatUtc(*track.points[1].utc, 1), "2026-06-21T04:00:10.5Z");
   EXPECT_EQ(FormatUtc(*track.points[2].utc), "2026-06-21T04:00:20Z");
@@ -85,7 +85,7 @@ TEST_F(TrackFile, ALineOfKmlIsReadLongitudeFirst) {
   EXPECT_EQ(track.name, "Valley");
   EXPECT_EQ(track.heights, TrackHeights::kSea);
   ASSERT_EQ(track.points.size(), 3U);
-  EXPECT_NEAR(Degrees(track.points[2].place.latitude_rad), 46.7, 1e-12);
+  EXPECT_NEAR(track.points[2].place.latitude_deg, 46.7, 1e-12);
   EXPECT_EQ(track.points[2].place.height_m, 1200.0);
   const auto heights = [&](const std::string& mode) {
     return Read("<kml><LineString>" + mode +
@@ -105,7 +105,7 @@ TEST_F(TrackFile, ATrackOfKmlHasItsTimes) {
                            "t.kml");
   ASSERT_EQ(track.points.size(), 2U);
   EXPECT_EQ(FormatUtc(*track.points[1].utc), "2026-06-21T04:00:05Z");
-  EXPECT_NEAR(Degrees(track.points[1].place.longitude_rad), 8.1, 1e-12);
+  EXPECT_NEAR(track.points[1].place.longitude_deg, 8.1, 1e-12);
 }
 
 TEST_F(TrackFile, AFaultIsReportedWithItsFileAndLine) {
@@ -268,7 +268,7 @@ TEST_F(TrackFile, APointAtAnOddPlaceIsLeftOutWhereverItStands) {
       const Track track = Read(WalkWith(texts));
       EXPECT_EQ(track.points.size(), 9U - at.size()) << odd << " at " << at.front();
       for (const TrackPoint& point : track.points)
-        EXPECT_LT(std::abs(Degrees(point.place.latitude_rad) - 46.04), 0.05) << odd;
+        EXPECT_LT(std::abs(point.place.latitude_deg - 46.04), 0.05) << odd;
       EXPECT_THAT(track.note, StartsWith(fmt::format("{} of 9 points have ", at.size()))) << odd;
       EXPECT_THAT(track.note, Not(HasSubstr("\n"))) << "one line";
     }
@@ -304,7 +304,7 @@ TEST_F(TrackFile, APointWithAnOddTimeDoesNotSpoilTheFile) {
       EXPECT_GE(track.points.size(), 9U - at.size()) << odd;
       for (const TrackPoint& point : track.points) {
         ASSERT_TRUE(point.utc) << odd;
-        const double minutes = (Degrees(point.place.latitude_rad) - 46.0) / 0.01;
+        const double minutes = (point.place.latitude_deg - 46.0) / 0.01;
         EXPECT_NEAR(SecondsBetween(ParseInstant("2026-06-21T10:00:00Z"), *point.utc),
                     60.0 * minutes, 1.0)
             << odd << ": a point that is kept has the time that its place tells";

@@ -16,7 +16,7 @@ using namespace renderer;
 
 /// Returns the frame of a place at height 0.
 inline LocalFrame FrameAt(double latitude_deg, double longitude_deg) {
-  return LocalFrame(kWgs84, PlaceFromDegrees(latitude_deg, longitude_deg, 0.0));
+  return LocalFrame(kWgs84, CheckedPlace({latitude_deg, longitude_deg, 0.0}));
 }
 
 /// Returns a grid whose heights [m] are a function of row and column.

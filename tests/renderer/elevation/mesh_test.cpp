@@ -56,11 +56,11 @@ TEST(MeshFromElevation, VerticesLieAtTheirHeightOverTheEllipsoid) {
   ASSERT_EQ(mesh.triangles.size(), 2U * 100U * 100U);
   for (int row = 0; row < 101; row += 10) {
     for (int column = 0; column < 101; column += 10) {
-      const GeodeticPosition place =
+      const Place place =
           frame.GeodeticFromEnu({ToDouble(mesh.positions[grid.index(row, column)])});
       EXPECT_NEAR(place.height_m, 10.0 * row + column, 4e-3) << "float rounds 67 km by 4 mm";
-      EXPECT_NEAR(place.latitude_rad, grid.LatitudeOfRow(row), 1e-9);
-      EXPECT_NEAR(place.longitude_rad, grid.LongitudeOfColumn(column), 1e-9);
+      EXPECT_NEAR(place.latitude_rad(), grid.LatitudeOfRow(row), 1e-9);
+      EXPECT_NEAR(place.longitude_rad(), grid.LongitudeOfColumn(column), 1e-9);
     }
   }
 }

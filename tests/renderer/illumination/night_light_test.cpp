@@ -167,7 +167,7 @@ struct Night {
 
 /// The pole of the galaxy is high in this sky, the ecliptic low.
 NightSky SkyOfApril() {
-  return NightSky(PlaceFromDegrees(46.5, 8.0, 0.0), ParseInstant("2026-04-17T23:30:00Z"));
+  return NightSky(Place{46.5, 8.0, 0.0}, ParseInstant("2026-04-17T23:30:00Z"));
 }
 
 double Magnitudes(double cd_per_m2) { return -2.5 * std::log10(cd_per_m2 / 10.8e4); }
@@ -180,7 +180,7 @@ TEST(Skyglow, IsDarkWithoutAir) {
 }
 
 TEST(NightLight, ADarkZenithHas21Point6MagnitudesAndGroundAMillilux) {
-  const GeodeticPosition paranal = PlaceFromDegrees(-24.63, -70.40, kMaunaKea_m);
+  const Place paranal = CheckedPlace({-24.63, -70.40, kMaunaKea_m});
   double magnitudes = 0.0, lux = 0.0;
   for (const char* night :
        {"2026-03-20T05:00:00Z", "2026-09-11T05:00:00Z", "2026-12-09T05:00:00Z"}) {
@@ -217,8 +217,7 @@ TEST(NightLight, OfTownsIsRedAndGrowsTowardsTheHorizon) {
 }
 
 TEST(NightLight, GrowsTowardsTheHorizonAboveTheAir) {
-  const Night night(
-      NightSky(PlaceFromDegrees(46.5, 8.0, 0.0), ParseInstant("2026-03-20T00:00:00Z")), 0.0);
+  const Night night(NightSky(Place{46.5, 8.0, 0.0}, ParseInstant("2026-03-20T00:00:00Z")), 0.0);
   const auto luminance = [&](double elevation_deg) {
     const double e = elevation_deg * kRadiansPerDegree;
     return night.colour.Xyz(InDouble(night.light.Above({0.0, std::cos(e), std::sin(e)})))[1];

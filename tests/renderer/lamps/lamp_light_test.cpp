@@ -58,7 +58,7 @@ TEST(LampLight, ACandelaIsACandelaInEveryColour) {
   for (const double kelvin : {2000.0, Light{}.temperature_k, 6500.0}) {
     scene.lights[0].temperature_k = kelvin;
     const LampSite site(scene);
-    const double distance = glm::length(site.Place(scene.lights[0]) - kLampEye);
+    const double distance = glm::length(site.PositionOf(scene.lights[0]) - kLampEye);
     const Bands<float> light = site.light.OnSurface(site.light.All(), facing);
     EXPECT_NEAR(site.Luminance(light), 1000.0 / (distance * distance), 0.1 * 0.01)
         << kelvin << " K: 100 m of clear air take away and give less than 1 %";
@@ -73,7 +73,7 @@ TEST(LampLight, LightInFogIsThatOfTheReference) {
   scene.layers = {FogOver(0.0, 0.01, 30.0)};
   scene.lights = {LightAt(300.0, 10.0, 5.0, 1000.0)};
   const LampSite site(scene);
-  const glm::dvec3 place = site.Place(scene.lights[0]);
+  const glm::dvec3 place = site.PositionOf(scene.lights[0]);
   for (const glm::dvec3& towards :
        {glm::dvec3(0.0, 1.0, -0.1), glm::dvec3(0.1, 1.0, 0.0), glm::dvec3(0.0, 1.0, -0.2)}) {
     const glm::dvec3 unit = glm::normalize(towards);
@@ -170,7 +170,7 @@ TEST(LampLight, PicturesKeepTheIntensityAlsoThroughALens) {
     EXPECT_NEAR(IlluminanceInPicture(site, light, camera, 8) / sharp, 1.0, 0.01)
         << "sums over points, " << blades << " blades";
     // The middle is as bright as flux over area; the area of a hexagon is smaller than its circle.
-    const glm::dvec3 to_lamp = site.Place(scene.lights[0]) - kLampEye;
+    const glm::dvec3 to_lamp = site.PositionOf(scene.lights[0]) - kLampEye;
     const glm::dvec3 towards = glm::normalize(to_lamp);
     const double area = Iris(blades).area() * std::pow(camera.BlurRadius(to_lamp), 2);
     const Bands<float> seen =
@@ -195,7 +195,7 @@ TEST_F(LampShadows, AWallShadesTheGroundAndTheAirBehindIt) {
   // The truth along a ray in front of the wall: 4000 short pieces, each tested for shadow.
   const glm::dvec3 eye(0.0, 0.0, 20.0), ray = glm::normalize(glm::dvec3(-0.5, 0.8, 0.05));
   Lamp lamp;
-  lamp.position_m = site.Place(scene.lights[0]);
+  lamp.position_m = site.PositionOf(scene.lights[0]);
   lamp.radius_m = 0.05;
   const LampAir air = HomogeneousAir(0.005, 0.005, scene.layers[0].phase);
   double lit = 0.0, whole = 0.0;
@@ -220,7 +220,7 @@ TEST_F(LampShadows, LampsAreHiddenByAWallAndRefusedBelowTheGround) {
   scene.lights = {LightAt(130.0, 0.0, 10.0, 1000.0), LightAt(130.0, 80.0, 10.0, 1000.0)};
   const LampSite site(scene);
   const auto seen = [&](const Light& lamp) {
-    const glm::dvec3 eye(0.0, 0.0, 20.0), to_lamp = glm::normalize(site.Place(lamp) - eye);
+    const glm::dvec3 eye(0.0, 0.0, 20.0), to_lamp = glm::normalize(site.PositionOf(lamp) - eye);
     return site.Luminance(site.light.Seen(site.light.All(), {eye, eye, to_lamp, to_lamp}, 1e-3));
   };
   EXPECT_EQ(seen(scene.lights[0]), 0.0);
@@ -379,7 +379,7 @@ TEST(LampExtremes, ALampWithoutIntensityChangesNoByte) {
 
 double FogOf(const LampSite& site, const glm::dvec3& direction) {
   return tests::FogByQuadrature(site.scene.layers[0], site.scene.lights[0],
-                                site.Place(site.scene.lights[0]),
+                                site.PositionOf(site.scene.lights[0]),
                                 {kLampEye, direction, 0.0, 100.0});
 }
 
@@ -388,7 +388,7 @@ TEST(LampExtremes, RaysThroughALampOrAMillimetreBesideItAreRight) {
   Scene scene = FoggyNight();
   scene.lights = {LampToTheNorth(30.0, 100.0)};
   const LampSite site(scene);
-  const glm::dvec3 offset = site.Place(scene.lights[0]) - kLampEye;
+  const glm::dvec3 offset = site.PositionOf(scene.lights[0]) - kLampEye;
   for (const double beside_m : {0.0, 1e-4, 1e-3, 1e-2}) {
     const glm::dvec3 direction = glm::normalize(offset + glm::dvec3(beside_m, 0.0, 0.0));
     EXPECT_NEAR(site.InAir(direction, 100.0, 32) / FogOf(site, direction), 1.0, 2e-3)
@@ -421,7 +421,7 @@ TEST(LampExtremes, FogOverAHighBaseIsLitAsFogOverTheGround) {
   high.lights = {LampToTheNorth(30.0, 100.0)};
   high.lights[0].height = {kBase_m + 10.0, false};
   const LampSite site(high);
-  const glm::dvec3 place = site.Place(high.lights[0]) - glm::dvec3(0.0, 0.0, kBase_m);
+  const glm::dvec3 place = site.PositionOf(high.lights[0]) - glm::dvec3(0.0, 0.0, kBase_m);
   for (const double fall : {-0.8, -0.2, 0.0}) {
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.1, 1.0, fall));
     const double truth = tests::FogByQuadrature(high.layers[0], high.lights[0], place,
@@ -440,7 +440,7 @@ TEST(LampExtremes, ThePlanetHidesALampBeyondTheHorizon) {
     const bool is_seen = far_m < 10e3;
     const CameraRays camera = CameraOn(site.ground, scene.camera, {}, 160, 90).middle();
     const LampLight light = site.light.SeenBy(camera);
-    const glm::dvec3 to_lamp = glm::normalize(site.Place(scene.lights[0]) - camera.eye());
+    const glm::dvec3 to_lamp = glm::normalize(site.PositionOf(scene.lights[0]) - camera.eye());
     const Bands<float> seen =
         light.Seen(light.All(), {camera.eye(), camera.eye(), to_lamp, to_lamp}, 1e-3);
     EXPECT_EQ(site.Luminance(seen) > 0.0, is_seen) << far_m;
@@ -457,13 +457,13 @@ TEST(LampExtremes, AirIsLitWhereNoSeaIsBetweenItAndTheLamp) {
   scene.lights = {tests::LampNear(scene.place, 40e3, 0.0, 2.0, 1e9)};
   const LampSite site(scene);
   const LampStage stage(scene, site.ground, site.medium);
-  const glm::dvec3 lamp = site.Place(scene.lights[0]);
+  const glm::dvec3 lamp = site.PositionOf(scene.lights[0]);
   constexpr double kHorizon_m = 5048.0;  // of the lamp
   for (const double north_m : {1e3, 10e3, 20e3, 30e3}) {
     const double shadow_m = std::pow(40e3 - north_m - kHorizon_m, 2.0) / (2.0 * 6.378e6);
     for (const double off_m : {-2.0, 2.0}) {
-      const GeodeticPosition place{scene.place.latitude_rad + north_m / 6.371e6,
-                                   scene.place.longitude_rad, shadow_m + off_m};
+      const Place place = PlaceFromRadians(scene.place.latitude_rad() + north_m / 6.371e6,
+                                           scene.place.longitude_rad(), shadow_m + off_m);
       EXPECT_EQ(stage.Sees(lamp, site.ground.frame.EnuFromGeodetic(place).xyz), off_m > 0.0)
           << north_m << " m north";
     }

@@ -36,7 +36,7 @@ constexpr MountainCover kSummer{2100.0, 2900.0};
 
 /// Returns a plain of 8 km x 8 km at 46 N, by default at 8 E.
 SceneGround Plain(double longitude = 8.0) {
-  SceneGround ground{LocalFrame(kWgs84, PlaceFromDegrees(46.0, longitude, 0.0)), std::nullopt, 2.0,
+  SceneGround ground{LocalFrame(kWgs84, CheckedPlace({46.0, longitude, 0.0})), std::nullopt, 2.0,
                      "", true};
   ground.terrain.emplace(LandMesh([](double, double) { return 0.0; }, 33, 250.0));
   return ground;
@@ -205,10 +205,10 @@ TEST(CoverOfClass, SharesOfLandSumToOneAtMost) {
 
 TEST_F(DrapedColours, AreTheSameForPointsOfAnotherFrame) {
   const auto drape = Drape(WritePicture(folder_ / "plain.tif"));
-  const LocalFrame other(kWgs84, PlaceFromDegrees(46.02, 8.03, 0.0));
+  const LocalFrame other(kWgs84, Place{46.02, 8.03, 0.0});
   const auto moved = drape->In(other);
   for (const double latitude : {45.98, 46.0, 46.03}) {
-    GeodeticPosition place = PlaceFromDegrees(latitude, 7.99, 300.0);
+    Place place = CheckedPlace({latitude, 7.99, 300.0});
     const auto own = drape->At(Plain().frame.EnuFromGeodetic(place).xyz, 300.0, 1.0);
     const auto seen = moved->At(other.EnuFromGeodetic(place).xyz, 300.0, 1.0);
     ASSERT_TRUE(own && seen);
@@ -285,8 +285,8 @@ TEST_F(DrapedColours, LieWhereTheGeoreferenceSays) {
   const std::array<double, 6> transform{7.97, kStep, 0.0, 46.03, 0.0, -kStep};
   const auto drape = Drape(WritePicture(folder_ / "placed.tif", &transform));
   for (const auto& [column, row] : {std::pair{40, 20}, {10, 50}, {25, 33}}) {
-    const GeodeticPosition place =
-        PlaceFromDegrees(46.03 - kStep * (row + 0.5), 7.97 + kStep * (column + 0.5), 800.0);
+    const Place place =
+        CheckedPlace({46.03 - kStep * (row + 0.5), 7.97 + kStep * (column + 0.5), 800.0});
     constexpr double kShift = 0.01;  // a hundredth of a pixel
     ExpectColour(drape->At(Plain().frame.EnuFromGeodetic(place).xyz, 800.0, 1.0),
                  {3 * column, 3 * row, 90}, kShift);
@@ -307,8 +307,8 @@ TEST_F(DrapedColours, LieThereInWhateverTurnLongitudesAreCounted) {
     const auto drape = Drape(WritePicture(folder_ / "placed.tif", &transform), land);
     EXPECT_EQ(drape->note(), "");
     for (const auto& [column, row] : {std::pair{2, 20}, {28, 33}, {33, 33}, {60, 50}}) {
-      const GeodeticPosition place = PlaceFromDegrees(46.03 - kStep * (row + 0.5),
-                                                      land - 0.03 + kStep * (column + 0.5), 800.0);
+      const Place place =
+          CheckedPlace({46.03 - kStep * (row + 0.5), land - 0.03 + kStep * (column + 0.5), 800.0});
       constexpr double kShift = 0.01;  // a hundredth of a pixel
       ExpectColour(drape->At(Plain(land).frame.EnuFromGeodetic(place).xyz, 800.0, 1.0),
                    {3 * column, 3 * row, 90}, kShift);
@@ -376,11 +376,11 @@ TEST(BandsOfColour, AreTheAlbedosOfColours) {
 constexpr std::array kFuji{35.36, 138.73}, kOetztal{46.9, 10.9}, kOberland{46.5, 8.0};
 
 MountainCover On(const char* day, const std::array<double, 2>& place) {
-  return CoverInSeason(PlaceFromDegrees(place[0], place[1], 0.0),
+  return CoverInSeason(CheckedPlace({place[0], place[1], 0.0}),
                        ParseInstant(std::string(day) + "T12:00:00Z").modified_julian_day);
 }
 MountainClimate ClimateAt(double latitude, double longitude) {
-  return MountainClimateAt(PlaceFromDegrees(latitude, longitude, 0.0));
+  return MountainClimateAt(CheckedPlace({latitude, longitude, 0.0}));
 }
 
 /// Returns the albedo of gentle ground in the green, averaged over the wavering of its lines.
@@ -533,7 +533,7 @@ TEST(MountainCover, SpringRisesBy122MetresInFourDays) {
 TEST(MountainCover, TheTropicsAreGreenAllTheYear) {
   for (int day = 61000; day < 61366; day += 10) {
     for (const double latitude : {-20.0, 0.0, 20.0}) {
-      const MountainCover cover = CoverInSeason(PlaceFromDegrees(latitude, 30.0, 0.0), day);
+      const MountainCover cover = CoverInSeason(CheckedPlace({latitude, 30.0, 0.0}), day);
       EXPECT_GT(cover.leaf_line_m, 500.0) << latitude << " " << day;
       EXPECT_GT(cover.grass_line_m, 500.0) << latitude << " " << day;
     }

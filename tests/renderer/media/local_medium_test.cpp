@@ -94,7 +94,8 @@ struct NightStage {
   Lighting light = [this] {
     SunPosition sun;
     sun.distance_au = 1.0;
-    Lighting at = LightingOf(sun, UtcTime{60000, 0.0}, {.latitude_rad = 0.8}, scene.medium);
+    Lighting at =
+        LightingOf(sun, UtcTime{60000, 0.0}, PlaceFromRadians(0.8, 0.0, 0.0), scene.medium);
     at.source.direction = Unrefracted({0.0, 0.6, -0.8});
     at.source.radius_rad = 0.00465;
     return at;

@@ -49,7 +49,7 @@ struct MediaStage {
   Lighting light = [this] {
     SunPosition sun;
     sun.distance_au = 1.0;
-    Lighting at = LightingOf(sun, UtcTime{60000, 0.0}, {.latitude_rad = 0.8}, medium);
+    Lighting at = LightingOf(sun, UtcTime{60000, 0.0}, PlaceFromRadians(0.8, 0.0, 0.0), medium);
     at.source.direction = Unrefracted(kToSun);
     at.source.radius_rad = 0.00465;
     return at;
@@ -375,8 +375,8 @@ const Image& ClearNoon() {
 Scene WithVolume(double extinction, double albedo) {
   Scene scene = WithoutVolume();
   Volume volume;
-  volume.latitude_rad = scene.place.latitude_rad + 400.0 / 6.36e6;
-  volume.longitude_rad = scene.place.longitude_rad;
+  volume.place = PlaceFromRadians(scene.place.latitude_rad() + 400.0 / 6.36e6,
+                                  scene.place.longitude_rad(), 0.0);
   volume.height = {20.0, false};
   volume.size_m = {60.0, 60.0, 60.0};
   volume.extinction_per_m = {extinction};

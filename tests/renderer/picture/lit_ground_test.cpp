@@ -143,9 +143,9 @@ TEST(LitGround, MeshesOfAnotherDetailHaveTheSitesShadow) {
 
 TEST(LitGround, VerticesInAFrameFarAwayAreTheSameVertices) {
   const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), 10.0));
-  GeodeticPosition away = tests::kRoughPlace;
-  away.latitude_rad += 0.004;  // 25 km
-  away.longitude_rad -= 0.002;
+  Place away = tests::kRoughPlace;
+  away.latitude_deg += 0.23;  // 25 km
+  away.longitude_deg -= 0.11;
   const LocalFrame& here = TheSite()->ground().frame;
   const LocalFrame there(kWgs84, away);
   struct Framed {

@@ -53,7 +53,7 @@ struct StarView {
 
 /// Returns the direction of Sirius at the place of BareScene.
 StarView SiriusAt(const UtcTime& instant) {
-  const LocalFrame frame(kWgs84, PlaceFromDegrees(46.5, 8.0, 2.0));
+  const LocalFrame frame(kWgs84, Place{46.5, 8.0, 2.0});
   const glm::dvec3 enu = frame.EnuFromEcef(StarsAt(instant).front().direction).xyz;
   return {std::atan2(enu.x, enu.y) / kRadiansPerDegree, std::asin(enu.z) / kRadiansPerDegree};
 }
@@ -108,7 +108,7 @@ TEST(NightPicture, TrailsHaveTheLuxOfTheirStarAndTheirLength) {
 }
 
 TEST(NightPicture, TheMoonDrawsATrailOfItsLight) {
-  const MoonPosition moon = MoonAt(PlaceFromDegrees(46.5, 8.0, 2.0), kFullMoon);
+  const MoonPosition moon = MoonAt(Place{46.5, 8.0, 2.0}, kFullMoon);
   Scene scene = QuickScene(2.0, moon.azimuth_rad / kRadiansPerDegree,
                            moon.elevation_rad / kRadiansPerDegree, 8.0);
   const RenderSettings settings = Small(64, 64);
@@ -247,7 +247,7 @@ Bright BrightOf(const Image& image) {
 
 /// Returns the moon at the place of BareScene.
 MoonPosition MoonOver(const UtcTime& instant) {
-  return ApparentMoonAt(PlaceFromDegrees(46.5, 8.0, 2.0), instant);
+  return ApparentMoonAt(Place{46.5, 8.0, 2.0}, instant);
 }
 
 TEST(MoonPicture, TheFullMoonHasItsPlaceAndBrightness) {
@@ -277,7 +277,7 @@ TEST(MoonPicture, TheHalfMoonOfAnEveningIsLitOnItsRight) {
 
 constexpr double kBurgosEye_m = 2.0;
 
-GeodeticPosition Burgos() { return PlaceFromDegrees(42.3439, -3.6969, kBurgosEye_m); }
+Place Burgos() { return CheckedPlace({42.3439, -3.6969, kBurgosEye_m}); }
 
 enum class Moon { kThere, kAbsent };
 
@@ -285,10 +285,10 @@ enum class Moon { kThere, kAbsent };
 const SceneRenderer& OverBurgos(Moon moon) {
   const auto scene_of = [](Moon of) {
     Scene scene = QuickScene(kBurgosEye_m, 0.0, 0.0, 60.0);
-    scene.place = PlaceFromDegrees(42.3439, -3.6969, 0.0);
+    scene.place = {42.3439, -3.6969, 0.0};
     if (of == Moon::kThere) return scene;
     scene.medium.follows_wgs84 = false;
-    scene.medium.planet_radius_m = OsculatingRadius(kWgs84, scene.place.latitude_rad);
+    scene.medium.planet_radius_m = OsculatingRadius(kWgs84, scene.place.latitude_rad());
     return scene;
   };
   static const SceneRenderer kWith(scene_of(Moon::kThere)), kWithout(scene_of(Moon::kAbsent));

@@ -47,7 +47,7 @@ double TrueElevation(const Medium& medium, double apparent_rad, double height_m)
 TEST(RefractedPlaces, TheSunIsWhereTheRayEquationSays) {
   const SceneRenderer renderer(QuickScene(2.0, 0.0, 0.0, 60.0));
   for (const double height_m : {2.0, 3000.0}) {
-    const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, height_m);
+    const Place eye = CheckedPlace({46.5, 8.0, height_m});
     int seen = 0;
     for (int minutes = 0; minutes < 60; minutes += 6) {
       const UtcTime instant = AddSeconds(ParseInstant("2026-06-21T18:26:00Z"), 60.0 * minutes);
@@ -71,7 +71,7 @@ TEST(RefractedPlaces, StarsAreWhereTheRayEquationSays) {
   const BandColour colour(medium.wavelengths_nm);
   constexpr double kFaintest = 4.5;
   for (const double height_m : {2.0, 3000.0}) {
-    const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, height_m);
+    const Place eye = CheckedPlace({46.5, 8.0, height_m});
     const RefractedView view(medium, height_m);
     const LocalFrame local(kWgs84, eye);
     const auto stars = StarsAt(instant, kFaintest);
@@ -97,7 +97,7 @@ TEST(RefractedPlaces, OnMarsAlmostNothingIsLifted) {
   scene.medium = MediumPreset("mars");
   const UtcTime evening = ParseInstant("2026-06-21T19:15:00Z");
   const SunPosition sun = tests::SunSeenIn(scene, evening);
-  EXPECT_NEAR(sun.elevation_rad, SunAt(PlaceFromDegrees(46.5, 8.0, 2.0), evening).elevation_rad,
+  EXPECT_NEAR(sun.elevation_rad, SunAt(Place{46.5, 8.0, 2.0}, evening).elevation_rad,
               1.0 * kArcminute);
   EXPECT_LT(sun.lower_for_air_rad, 1.0 * kArcminute) << "its light comes from where it is seen";
 }
@@ -145,11 +145,10 @@ void ExpectFlat(const std::function<double(EffectSet effects)>& area_of_circle, 
 }
 
 TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationSays) {
-  const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 20.0);
+  const Place eye{46.5, 8.0, 20.0};
   const UtcTime instant =
       AddSeconds(*NextMoonrise(eye, ParseInstant("2026-06-29T12:00:00Z")), 360.0);  // full
-  const Medium medium =
-      OnOsculatingSphere(MediumPreset("earth"), PlaceFromDegrees(46.5, 8.0, 0.0).latitude_rad);
+  const Medium medium = OnOsculatingSphere(MediumPreset("earth"), 46.5 * kRadiansPerDegree);
   const MoonPosition moon = ApparentMoonAt(eye, instant, GentleAirOf(medium));
   const SceneRenderer renderer(QuickScene(20.0, moon.azimuth_rad / kRadiansPerDegree,
                                           moon.elevation_rad / kRadiansPerDegree, 1.2));
@@ -214,8 +213,8 @@ TEST(RefractedPlaces, TheSeaEndsAtTheHorizonOfStraightOrRefractedRays) {
 }
 
 TEST_F(RefractedTerrain, HiddenPeaksAppearWhereTheRayEquationSays) {
-  const Medium medium =
-      OnOsculatingSphere(MediumPreset("earth"), QuickScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad);
+  const Medium medium = OnOsculatingSphere(MediumPreset("earth"),
+                                           QuickScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad());
   const double radius_m = medium.planet_radius_m;
   for (const FarPeak& peak :
        {FarPeak{20.0, 110e3, 650.0}, FarPeak{20.0, 150e3, 1350.0}, FarPeak{3000.0, 300e3, 800.0}}) {
@@ -304,7 +303,7 @@ class AirFromSpace {
   [[nodiscard]] double Depth(double elevation_rad, double fov, std::size_t band) const {
     CameraSample camera_sample(kRefractedNoon);
     camera_sample.poses = {
-        {PlaceFromDegrees(46.5, 8.0, height_m_), 0.0, elevation_rad, 0.0, fov * kRadiansPerDegree}};
+        {CheckedPlace({46.5, 8.0, height_m_}), 0.0, elevation_rad, 0.0, fov * kRadiansPerDegree}};
     const FrameContext frame(scene_, camera_sample, {.width = 65, .height = 37, .layers = {}});
     const PixelShader shader(frame);
     const CameraRay ray = frame.camera().MiddleRay(32.5, 18.5);

@@ -39,8 +39,8 @@ RenderSettings Settings(int width, int height, std::vector<PictureLayer> layers 
 CameraSample CameraSampleFrom(double height_m, double pitch, double roll, double fov) {
   const Camera camera = CameraFromDegrees({}, 40.0, pitch, roll, 60.0);
   CameraSample camera_sample(kExtremeNoon);
-  camera_sample.poses = {{PlaceFromDegrees(46.5, 8.0, height_m), camera.heading_rad,
-                          camera.pitch_rad, camera.roll_rad, fov * kRadiansPerDegree}};
+  camera_sample.poses = {{CheckedPlace({46.5, 8.0, height_m}), camera.heading_rad, camera.pitch_rad,
+                          camera.roll_rad, fov * kRadiansPerDegree}};
   return camera_sample;
 }
 

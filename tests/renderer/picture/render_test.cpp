@@ -104,8 +104,8 @@ TEST(Render, BytesAreTheSameForAnyNumberOfThreads) {
 CameraPose PoseAt(double latitude, double longitude, double height_m, double heading,
                   double pitch) {
   const Camera camera = CameraFromDegrees({}, heading, pitch, 0.0, 40.0);
-  return {PlaceFromDegrees(latitude, longitude, height_m), camera.heading_rad, camera.pitch_rad,
-          0.0, camera.fov_rad};
+  return {CheckedPlace({latitude, longitude, height_m}), camera.heading_rad, camera.pitch_rad, 0.0,
+          camera.fov_rad};
 }
 
 double MostRelativeDifference(const Image& a, const Image& b) {
@@ -123,7 +123,7 @@ TEST(Render, AnEyeOnAPathSeesTheSameAsOneThatStandsThere) {
   CameraSample camera_sample(evening);
   camera_sample.poses = {PoseAt(46.0, 8.8, 3000.0, 300.0, 4.0)};
   Scene there = QuickScene(3000.0, 300.0, 4.0, 40.0);
-  there.place = PlaceFromDegrees(46.0, 8.8, 0.0);
+  there.place = {46.0, 8.8, 0.0};
   const SceneRenderer at(there);
   EXPECT_LT(MostRelativeDifference(from.Render(camera_sample, kSmall), at.Render(evening, kSmall)),
             2e-3)
@@ -310,7 +310,7 @@ TEST(Render, AMovingCameraBlursADiskSmallerThanAPixel) {
     for (int i = 0; i <= 16; ++i) {
       const Camera at = view(half_turn_deg * (i / 8.0 - 1.0));
       sample.poses.push_back(
-          {PlaceFromDegrees(46.5, 8.0, 1000.0), at.heading_rad, at.pitch_rad, 0.0, at.fov_rad});
+          {Place{46.5, 8.0, 1000.0}, at.heading_rad, at.pitch_rad, 0.0, at.fov_rad});
     }
     return renderer.Render(sample, settings);
   };
@@ -330,7 +330,7 @@ TEST_F(RenderOfFiles, SummitOfFujiIsLitBeforeTheLakeBelow) {
   if (!std::filesystem::exists(tests::FujiModel()))
     GTEST_SKIP() << "no elevation model at " << tests::FujiModel();
   Scene scene = QuickScene(0.0, 0.0, 0.0, 8.0);
-  scene.place = PlaceFromDegrees(35.50, 138.76, 0.0);
+  scene.place = {35.50, 138.76, 0.0};
   scene.terrain = {TerrainSource::Kind::kElevationModel, tests::CoarseFuji(folder_),
                    VoidPolicy::kFill};
   // Mount Fuji (35.3606, 138.7274) stands 15.7 km off,

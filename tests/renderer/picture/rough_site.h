@@ -15,8 +15,7 @@ namespace alpenglow::tests {
 
 using namespace renderer;
 
-inline constexpr GeodeticPosition kRoughPlace{46.5 * kRadiansPerDegree, 8.0 * kRadiansPerDegree,
-                                              0.0};
+inline constexpr Place kRoughPlace{46.5, 8.0, 0.0};
 
 /// The medium without the molecules, which bend rays.
 inline Medium Unbending(Medium medium) {
@@ -29,7 +28,7 @@ inline Medium Unbending(Medium medium) {
 inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {},
                                                    const std::filesystem::path& colours = {},
                                                    const std::filesystem::path& land_cover = {}) {
-  const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kRoughPlace.latitude_rad);
+  const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kRoughPlace.latitude_rad());
   SolvedAir air(SingleScattering<float>(medium), RefractedBeam(Unbending(medium)),
                 MultipleScattering(medium, kSmallLight));
   SceneGround ground{LocalFrame(kWgs84, kRoughPlace), Terrain(LandMesh(RoughLand, 129, 60.0)), 0.0,

@@ -12,10 +12,10 @@ using namespace renderer;
 
 /// Returns the sun as the eye of a scene without terrain sees it.
 inline SunPosition SunSeenIn(const Scene& scene, const UtcTime& instant) {
-  GeodeticPosition eye = scene.place;
+  Place eye = scene.place;
   eye.height_m = scene.camera.height.value_m;
   return ApparentSunAt(eye, instant,
-                       GentleAirOf(OnOsculatingSphere(scene.medium, eye.latitude_rad)));
+                       GentleAirOf(OnOsculatingSphere(scene.medium, eye.latitude_rad())));
 }
 
 }  // namespace alpenglow::tests

@@ -61,8 +61,8 @@ double OverTheSea(double heading, double pitch) {
   }());
   const Camera camera = CameraFromDegrees({}, heading, pitch, 0.0, 20.0);
   CameraSample camera_sample(kLowSun);
-  camera_sample.poses = {{PlaceFromDegrees(46.5, 8.0, 200.0), camera.heading_rad, camera.pitch_rad,
-                          0.0, camera.fov_rad}};
+  camera_sample.poses = {
+      {Place{46.5, 8.0, 200.0}, camera.heading_rad, camera.pitch_rad, 0.0, camera.fov_rad}};
   return MeanLuminance(renderer, camera_sample);
 }
 
@@ -129,8 +129,7 @@ TEST_F(Valley, HasTheSameBytesForAnyNumberOfThreads) {
   scene.ground.sea_level_m = 20.0;
   scene.layers = {MediumLayer{0.004, 40.0, 0.0, 1.0, FogPhase(12.0)}};
   Volume& smoke = scene.volumes.emplace_back();
-  smoke.latitude_rad = scene.place.latitude_rad;
-  smoke.longitude_rad = scene.place.longitude_rad;
+  smoke.place = scene.place;
   smoke.height = {100.0, false};
   smoke.size_m = {60.0, 60.0, 60.0};
   smoke.extinction_per_m = {0.02};
@@ -139,8 +138,8 @@ TEST_F(Valley, HasTheSameBytesForAnyNumberOfThreads) {
   CameraSample camera_sample(kLowSun);
   for (const double east_deg : {0.0, 1e-5}) {
     const Camera& camera = scene.camera;
-    camera_sample.poses.push_back({PlaceFromDegrees(46.5, 8.0 + east_deg, 400.0),
-                                   camera.heading_rad, camera.pitch_rad, 0.0, camera.fov_rad});
+    camera_sample.poses.push_back({CheckedPlace({46.5, 8.0 + east_deg, 400.0}), camera.heading_rad,
+                                   camera.pitch_rad, 0.0, camera.fov_rad});
   }
   RenderSettings settings = kSmallGround;
   settings.samples_per_pixel = tests::ScaledDown(7, 3);
@@ -214,7 +213,7 @@ TEST_F(RenderAirFiles, ShadedAirBeforeAMountainHasNoGlow) {
 TEST(RenderAir, TheSeaHidesTheFootOfDistantMountains) {
   Scene scene = QuickScene(10.0, 180.0, 0.5, 0.1);
   scene.terrain = {};
-  scene.terrain.centre = PlaceFromDegrees(45.5, 8.0, 0.0);  // 111 km to the south
+  scene.terrain.centre = {45.5, 8.0, 0.0};  // 111 km to the south
   const SceneRenderer renderer(scene);
   const RenderSettings settings{
       .width = 5,

@@ -35,12 +35,8 @@ namespace fs = std::filesystem;
 
 constexpr double kSpacing_m = 70.0;
 
-GeodeticPosition Degrees(double latitude, double longitude) {
-  return {latitude * kRadiansPerDegree, longitude * kRadiansPerDegree, 0.0};
-}
-
 const ElevationGrid& TheRange() {
-  static const ElevationGrid range = ProceduralMountains(Degrees(46.5, 8.0));
+  static const ElevationGrid range = ProceduralMountains(Place{46.5, 8.0});
   return range;
 }
 
@@ -69,11 +65,11 @@ TEST(ProceduralMountains, IsTheSameToTheLastBitEverywhere) {
     EXPECT_EQ(FingerprintOf(MadeRangeHeights(0)), kProceduralMountainsFingerprint)
         << "the range has changed: pictures made with it will not match older ones";
   }
-  EXPECT_EQ(TheRange().height_m, ProceduralMountains(Degrees(-33.9, 151.2)).height_m);
+  EXPECT_EQ(TheRange().height_m, ProceduralMountains(Place{-33.9, 151.2}).height_m);
 }
 
 TEST(ProceduralMountains, AnotherSeedHasOtherMountainsAndTheSameView) {
-  const GeodeticPosition centre = Degrees(46.5, 8.0);
+  const Place centre = Place{46.5, 8.0};
   const ElevationGrid other = ProceduralMountains(centre, 12345);
   int far_apart = 0;
   for (std::size_t i = 0; i < other.height_m.size(); ++i)
@@ -85,7 +81,7 @@ TEST(ProceduralMountains, AnotherSeedHasOtherMountainsAndTheSameView) {
   for (const ElevationGrid& range : {TheRange(), other}) {
     // Bilinear heights differ by up to a metre from those of the triangles, which define the
     // constant.
-    EXPECT_NEAR(range.HeightAt(view.eye.latitude_rad, view.eye.longitude_rad).value(),
+    EXPECT_NEAR(range.HeightAt(view.eye.latitude_rad(), view.eye.longitude_rad()).value(),
                 kRangeViewGround_m, 2.0);
   }
 }
@@ -171,7 +167,7 @@ struct Sight {
   int ridges;  // steps in depth of more than 2 km along the skyline's columns, most in one column
 };
 
-Sight Look(const GeodeticPosition& centre) {
+Sight Look(const Place& centre) {
   const ElevationGrid range = ProceduralMountains(centre);
   const BuiltInView view = ProceduralMountainsView(centre, range);
   const LocalFrame frame(kWgs84, view.eye);
@@ -187,12 +183,12 @@ Sight Look(const GeodeticPosition& centre) {
       highest = i;
   }
   const auto columns = static_cast<std::size_t>(range.columns);
-  const glm::dvec3 summit =
-      frame
-          .EnuFromGeodetic({range.LatitudeOfRow(static_cast<int>(highest / columns)),
-                            range.LongitudeOfColumn(static_cast<int>(highest % columns)),
-                            static_cast<double>(range.height_m[highest])})
-          .xyz;
+  const glm::dvec3 summit = frame
+                                .EnuFromGeodetic(PlaceFromRadians(
+                                    range.LatitudeOfRow(static_cast<int>(highest / columns)),
+                                    range.LongitudeOfColumn(static_cast<int>(highest % columns)),
+                                    static_cast<double>(range.height_m[highest])))
+                                .xyz;
   Sight sight{999.0, 0.0, 0};
   const auto hit = terrain.Intersect({0.0, 0.0, 0.0}, summit - glm::dvec3(0.0, 0.0, 5.0));
   if (hit && hit->distance_m > glm::length(summit) - 300.0) {
@@ -217,15 +213,15 @@ Sight Look(const GeodeticPosition& centre) {
 
 // Hard case 17.
 TEST(ProceduralMountainsView, ShowsTheHighestPeakEvenNearThePoles) {
-  const std::vector<GeodeticPosition> poles{Degrees(89.9, 120.0), Degrees(-90.0, 0.0)};
-  const std::vector<GeodeticPosition> all{Degrees(46.5, 8.0), poles[0], poles[1]};
-  for (const GeodeticPosition& centre : tests::ScaledDown(all, {poles[0]})) {
+  const std::vector<Place> poles{Place{89.9, 120.0}, Place{-90.0, 0.0}};
+  const std::vector<Place> all{Place{46.5, 8.0}, poles[0], poles[1]};
+  for (const Place& centre : tests::ScaledDown(all, {poles[0]})) {
     const Sight sight = Look(centre);
     EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);
     EXPECT_GT(sight.farthest_m, 40e3);
     EXPECT_GE(sight.ridges, 4) << "chain behind chain";
   }
-  const BuiltInView view = ProceduralMountainsView(Degrees(46.5, 8.0), TheRange());
+  const BuiltInView view = ProceduralMountainsView(Place{46.5, 8.0}, TheRange());
   EXPECT_NEAR(view.eye.height_m, 2000.0, 200.0);
   EXPECT_GT(view.heading_deg, 135.0) << "south-east to south: dawn comes from the left";
   EXPECT_LT(view.heading_deg, 180.0);

@@ -16,8 +16,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-double PlaceDegrees(double radians) { return radians / kRadiansPerDegree; }
-
 TEST(Places, EveryPlaceHasAZoneThatKnowsItsLongitude) {
   const UtcTime winter = ParseInstant("2026-01-15T12:00:00Z");
   std::set<std::string> names;
@@ -27,7 +25,7 @@ TEST(Places, EveryPlaceHasAZoneThatKnowsItsLongitude) {
     const std::string local = FormatInZone(winter, place.zone);
     if (place.kind == PlaceKind::kPole) continue;
     const double hours = std::stod(local.substr(19, 3));
-    const double of_sun = PlaceDegrees(place.place.longitude_rad) / 15.0;
+    const double of_sun = place.place.longitude_deg / 15.0;
     EXPECT_LT(std::abs(std::remainder(hours - of_sun, 24.0)), 3.3)
         << place.name << ": Lhasa keeps the time of Beijing";
   }
@@ -56,9 +54,10 @@ TEST(Places, AnAirportIsNearTheCityThatItServes) {
                                       {"SBRJ", "Rio de Janeiro"},
                                       {"ENTC", "Tromsø"},
                                       {"KDEN", "Denver"}}) {
-    const GeodeticPosition a = PlaceNamed(airport).place, b = PlaceNamed(city).place;
-    const double north_km = 6371.0 * (a.latitude_rad - b.latitude_rad);
-    const double east_km = 6371.0 * (a.longitude_rad - b.longitude_rad) * std::cos(a.latitude_rad);
+    const Place a = PlaceNamed(airport).place, b = PlaceNamed(city).place;
+    const double north_km = 6371.0 * (a.latitude_rad() - b.latitude_rad());
+    const double east_km =
+        6371.0 * (a.longitude_rad() - b.longitude_rad()) * std::cos(a.latitude_rad());
     EXPECT_LT(std::hypot(north_km, east_km), 35.0) << airport;
   }
 }
@@ -139,15 +138,15 @@ TEST(Places, AListThatIsSearchedHasTheBestFirst) {
 }
 
 TEST(Places, TheZoneIsTheScenesThenThatOfTheNearestPlaceThenTheLongitudes) {
-  const GeodeticPosition alps = PlaceFromDegrees(46.5, 8.0, 0.0);
+  const Place alps{46.5, 8.0, 0.0};
   EXPECT_EQ(ZoneNear(alps, "Europe/Rome", alps), "Europe/Rome");
   EXPECT_EQ(ZoneNear(alps, std::nullopt, alps), "Europe/Zurich");
-  const GeodeticPosition japan = PlaceFromDegrees(35.3, 138.8, 0.0);
+  const Place japan{35.3, 138.8, 0.0};
   EXPECT_EQ(ZoneNear(japan, "Europe/Rome", alps), "Asia/Tokyo") << "the scene is far";
-  const GeodeticPosition pacific = PlaceFromDegrees(0.0, -150.0, 0.0);
+  const Place pacific{0.0, -150.0, 0.0};
   EXPECT_EQ(ZoneNear(pacific, std::nullopt, alps), "Etc/GMT+10");
   for (double longitude = -180.0; longitude <= 180.0; longitude += 5.0) {
-    const std::string zone = ZoneNear(PlaceFromDegrees(-55.0, longitude, 0.0), std::nullopt, alps);
+    const std::string zone = ZoneNear(CheckedPlace({-55.0, longitude, 0.0}), std::nullopt, alps);
     EXPECT_NO_THROW(static_cast<void>(TimeZone(zone))) << zone;
   }
 }

@@ -125,8 +125,8 @@ longitude = 138.73
 height_m = 700.0
 intensity_cd = 0
 )");
-  EXPECT_DOUBLE_EQ(scene.place.latitude_rad, 35.3606 * kRadiansPerDegree);
-  EXPECT_DOUBLE_EQ(scene.place.longitude_rad, 138.7274 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.place.latitude_rad(), 35.3606 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.place.longitude_rad(), 138.7274 * kRadiansPerDegree);
   EXPECT_EQ(scene.zone, "Asia/Tokyo");
   EXPECT_EQ(FormatUtc(scene.time.value()), "2026-06-21T04:00:00Z");
   EXPECT_EQ(scene.camera.height, (Height{2500.0, false}));
@@ -484,20 +484,20 @@ TEST(SceneOptions, WithoutAModelTheRangeIsSeenFromItsViewpoint) {
   elsewhere.longitude = 11.0;
   EXPECT_TRUE(SceneFromOptions(elsewhere).terrain.is_default) << "other mountains stand there";
   ASSERT_TRUE(scene.terrain.centre.has_value());
-  EXPECT_DOUBLE_EQ(scene.terrain.centre->latitude_rad, 46.5 * kRadiansPerDegree);
-  EXPECT_NE(scene.place.latitude_rad, scene.terrain.centre->latitude_rad);
+  EXPECT_DOUBLE_EQ(scene.terrain.centre->latitude_rad(), 46.5 * kRadiansPerDegree);
+  EXPECT_NE(scene.place.latitude_rad(), scene.terrain.centre->latitude_rad());
   EXPECT_TRUE(scene.camera.height.above_ground);
   SceneOptions turned;
   turned.heading = 90.0;
   turned.height_m = 4000.0;
   EXPECT_DOUBLE_EQ(SceneFromOptions(turned).camera.heading_rad, 0.5 * kPi);
   EXPECT_EQ(SceneFromOptions(turned).camera.height, (Height{4000.0, false}));
-  EXPECT_EQ(SceneFromOptions(turned).place.latitude_rad, scene.place.latitude_rad);
+  EXPECT_EQ(SceneFromOptions(turned).place.latitude_rad(), scene.place.latitude_rad());
 }
 
 // Returns the distance [m] between the built-in view of a scene's range and the scene's place.
 double ViewOffPlace_m(const Scene& scene) {
-  GeodeticPosition eye = ProceduralMountainsViewAboveGround(*scene.terrain.centre).eye;
+  Place eye = ProceduralMountainsViewAboveGround(*scene.terrain.centre).eye;
   eye.height_m = 0.0;
   return glm::length((EcefFromGeodetic(kWgs84, eye) - EcefFromGeodetic(kWgs84, scene.place)).xyz);
 }
@@ -515,8 +515,9 @@ TEST(SceneOptions, TheRangeIsMovedToTheGivenPlace) {
       {-89.1, 10.0},  {-89.149, 10.0}, {-89.95, 33.0},     {-89.97, 200.0}};
   for (const auto& [latitude, longitude] : places) {
     const Scene scene = SceneTypedAt(latitude, longitude);
-    EXPECT_EQ(scene.place.latitude_rad, PlaceFromDegrees(latitude, longitude, 0.0).latitude_rad);
-    EXPECT_EQ(scene.place.longitude_rad, PlaceFromDegrees(latitude, longitude, 0.0).longitude_rad);
+    EXPECT_EQ(scene.place.latitude_rad(), CheckedPlace({latitude, longitude, 0.0}).latitude_rad());
+    EXPECT_EQ(scene.place.longitude_rad(),
+              CheckedPlace({latitude, longitude, 0.0}).longitude_rad());
     EXPECT_LT(ViewOffPlace_m(scene), 1e-6) << latitude << " " << longitude;
   }
   for (const double pole : {-90.0, 90.0, -89.99, 89.99}) {
@@ -545,7 +546,7 @@ TEST(SceneOptions, WithAModelTheEyeIsAtTheGivenPlace) {
   options.longitude = 138.76;
   options.atmosphere = "hazy";
   const Scene scene = SceneFromOptions(options);
-  EXPECT_DOUBLE_EQ(scene.place.latitude_rad, 35.5 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.place.latitude_rad(), 35.5 * kRadiansPerDegree);
   EXPECT_EQ(scene.terrain.file, "N35E138.hgt");
   EXPECT_EQ(scene.medium.name, "hazy");
   EXPECT_EQ(scene.camera.height, (Height{2.0, true}));
@@ -555,15 +556,15 @@ TEST(SceneOptions, ANamedPlaceStandsInForLatitudeAndLongitude) {
   SceneOptions options;
   options.place = "LSZH";
   options.dem = {"a.hgt", "b.hgt"};
-  const GeodeticPosition& zurich = PlaceNamed("LSZH").place;
+  const Place& zurich = PlaceNamed("LSZH").place;
   Scene scene = SceneFromOptions(options);
-  EXPECT_NEAR(scene.place.latitude_rad, zurich.latitude_rad, 1e-12);
-  EXPECT_NEAR(scene.place.longitude_rad, zurich.longitude_rad, 1e-12);
+  EXPECT_NEAR(scene.place.latitude_rad(), zurich.latitude_rad(), 1e-12);
+  EXPECT_NEAR(scene.place.longitude_rad(), zurich.longitude_rad(), 1e-12);
   EXPECT_EQ(scene.terrain.more_files, std::vector<std::filesystem::path>{"b.hgt"});
   options.latitude = 47.0;
   scene = SceneFromOptions(options);
-  EXPECT_DOUBLE_EQ(scene.place.latitude_rad, 47.0 * kRadiansPerDegree);
-  EXPECT_NEAR(scene.place.longitude_rad, zurich.longitude_rad, 1e-12);
+  EXPECT_DOUBLE_EQ(scene.place.latitude_rad(), 47.0 * kRadiansPerDegree);
+  EXPECT_NEAR(scene.place.longitude_rad(), zurich.longitude_rad(), 1e-12);
   options.place = "Atlantis";
   EXPECT_THROW(static_cast<void>(SceneFromOptions(options)), InputError);
 }

@@ -96,7 +96,7 @@ TEST(TimeText, UnknownTextsNameTheNearestKnown) {
 }
 
 TEST(TimeText, ContactsOfAnEclipseAreEvents) {
-  EventDay day{PlaceFromDegrees(42.3439, -3.6969, 860.0), "Europe/Madrid", {}};  // Burgos
+  EventDay day{Place{42.3439, -3.6969, 860.0}, "Europe/Madrid", {}};  // Burgos
   day.around = DayFromText("2026-08-12", day);
   const char* before = "sunrise";
   for (const char* event : {"first-contact", "second-contact", "eclipse-maximum", "third-contact",
@@ -109,7 +109,7 @@ TEST(TimeText, ContactsOfAnEclipseAreEvents) {
       SecondsBetween(InstantFromText("second-contact", day), InstantFromText("third-contact", day)),
       104.0, 1.0)
       << "of totality, in all almanacs";
-  const EventDay madrid{PlaceFromDegrees(40.4168, -3.7038, 660.0), "Europe/Madrid", day.around};
+  const EventDay madrid{Place{40.4168, -3.7038, 660.0}, "Europe/Madrid", day.around};
   EXPECT_THAT(FaultAt("second-contact", madrid), HasSubstr("no such eclipse of the sun"))
       << "partial";
   EXPECT_THAT(FaultAt("first-contact"), HasSubstr("no such eclipse of the sun"));
@@ -132,7 +132,7 @@ TEST(TimeText, PolarDayAndNightHaveNoSunrise) {
 }
 
 TEST(TimeText, TheDayOfAPlaceWithoutZoneIsThatOfItsMeridian) {
-  const EventDay fiji{PlaceFromDegrees(-17.7, 178.0, 0.0), {}, {}};
+  const EventDay fiji{Place{-17.7, 178.0, 0.0}, {}, {}};
   EXPECT_EQ(FormatUtc(DayFromText("2026-06-21", fiji)), "2026-06-21T00:08:00Z");
   EXPECT_THROW((void)DayFromText("2026-6-21", fiji), InputError);
   EXPECT_THROW((void)DayFromText("2026-02-30", fiji), InputError);
@@ -170,7 +170,7 @@ TEST(TimeText, TodayAndTomorrowAreDaysOfThePlace) {
 TEST(TimeText, MidnightIsWhereTheSunIsLowest) {
   for (const double latitude : {0.0, 46.5, 69.0}) {
     EventDay day = Fuji();
-    day.place.latitude_rad = latitude * kRadiansPerDegree;
+    day.place.latitude_deg = latitude;
     const UtcTime midnight = InstantFromText("midnight", day);
     const double lowest = SunAt(day.place, midnight).elevation_rad;
     for (const double seconds : {-600.0, 600.0})
@@ -181,7 +181,7 @@ TEST(TimeText, MidnightIsWhereTheSunIsLowest) {
 }
 
 TEST(TimeText, TomorrowIsTheNextDayWhenClocksAreChanged) {
-  EventDay zurich{PlaceFromDegrees(47.4, 8.5, 400.0), "Europe/Zurich", {}};
+  EventDay zurich{Place{47.4, 8.5, 400.0}, "Europe/Zurich", {}};
   for (const char* now : {"2026-03-28T23:59:00+01:00", "2026-03-28T00:01:00+01:00"}) {
     zurich.now = ParseInstant(now);
     EXPECT_EQ(DateAt(DayFromText("tomorrow", zurich), zurich), "2026-03-29") << now;
@@ -248,7 +248,7 @@ TEST(TimeText, SunAndMoonAreThoseOfAnAlmanac) {
   std::string date, utc;
   int days = 0;
   for (; almanac >> latitude >> longitude >> date; ++days) {
-    EventDay day{PlaceFromDegrees(latitude, longitude, 0.0), {}, {}};
+    EventDay day{CheckedPlace({latitude, longitude, 0.0}), {}, {}};
     day.around = DayFromText(date, day);
     for (const char* event : {"sunrise", "noon", "sunset", "moonrise", "moon-transit", "moonset"}) {
       ASSERT_TRUE(almanac >> utc);
@@ -342,7 +342,7 @@ std::vector<std::string> ClocksOf(const TimesText& times, const EventDay& day) {
   return clocks;
 }
 EventDay Zurich(const char* date) {
-  EventDay day{PlaceFromDegrees(47.0, 8.0, 0.0), "Europe/Zurich", {}};
+  EventDay day{Place{47.0, 8.0, 0.0}, "Europe/Zurich", {}};
   day.around = DayFromText(date, day);
   return day;
 }
@@ -397,7 +397,7 @@ TEST(FrameTimes, RelativeDaysEndASeriesAsWrittenOnesDo) {
 TEST(FrameTimes, DaysWithoutAZoneAreThoseThatAreWritten) {
   // At longitude 170 degrees the day of the meridian begins at 12:40 UTC.
   const auto last = [](const char* from) {
-    EventDay day{PlaceFromDegrees(0.0, 170.0, 0.0), {}, {}};
+    EventDay day{Place{0.0, 170.0, 0.0}, {}, {}};
     day.around = DayFromText("2026-06-21", day);
     return FormatUtc(Range(from, "2026-06-23", "1d", {}, day).back().instant);
   };

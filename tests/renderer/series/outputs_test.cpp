@@ -106,7 +106,7 @@ TEST(DayPlot, OneFrameAndAYearOfFramesHaveTheirTicks) {
 
 TEST(JsonManifest, HasTheMoonAndNullForMissingValues) {
   const Frame frame{3, Hour(4.0)};
-  const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 0.0);
+  const Place place{46.5, 8.0, 0.0};
   FrameRecord record = RecordOf(frame, place, std::nullopt);
   record.Set("file", "f.0003.exr");
   const std::string early = JsonOfManifest({record}, {{"alpenglow.fov_deg", "60"}}, false);
@@ -127,7 +127,7 @@ TEST(JsonManifest, HasTheMoonAndNullForMissingValues) {
 }
 
 EventDay TromsoInJune() {
-  EventDay day{PlaceFromDegrees(69.65, 18.96, 0.0), "Europe/Oslo", {}};
+  EventDay day{Place{69.65, 18.96, 0.0}, "Europe/Oslo", {}};
   day.around = DayFromText("2026-06-21", day);
   return day;
 }
@@ -176,7 +176,7 @@ TEST(DayTimes, TheMoonGrowsToTheFullMoon) {
 }
 
 EventDay EclipsedDay(double latitude_deg, double longitude_deg) {
-  EventDay day{PlaceFromDegrees(latitude_deg, longitude_deg, 0.0), "Europe/Madrid", {}};
+  EventDay day{CheckedPlace({latitude_deg, longitude_deg, 0.0}), "Europe/Madrid", {}};
   day.around = DayFromText("2026-08-11", day);
   return day;
 }

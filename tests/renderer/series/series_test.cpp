@@ -72,7 +72,7 @@ class SeriesRun : public TemporaryFolder {
       return Even({light, light, light});
     };
     source.settings = {{"alpenglow.fov_deg", "60"}};
-    source.viewpoint.place = PlaceFromDegrees(46.5, 8.0, 0.0);
+    source.viewpoint.place = {46.5, 8.0, 0.0};
     source.viewpoint.zone = "Europe/Zurich";
     return source;
   }

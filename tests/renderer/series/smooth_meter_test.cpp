@@ -104,10 +104,7 @@ TEST(SmoothMeter, ANodeIsMeteredOnce) {
 
 constexpr double kThreePercent_ev = 0.0426;  // log2(1.03)
 
-const GeodeticPosition& Place() {
-  static const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 0.0);
-  return place;
-}
+constexpr Place kPlaceOfSeries{46.5, 8.0, 0.0};
 
 std::vector<Frame> Minutes() {
   std::vector<Frame> frames;
@@ -120,7 +117,7 @@ std::vector<Frame> Minutes() {
 /// ones are beyond the camera's limit, and fade), with the slope of twilight in between (a factor
 /// of 1.4 in a minute, where the sun is 6 degrees low).
 double Luminance(const Frame& frame) {
-  const double elevation = SunAt(Place(), frame.instant).elevation_rad / kRadiansPerDegree;
+  const double elevation = SunAt(kPlaceOfSeries, frame.instant).elevation_rad / kRadiansPerDegree;
   return std::pow(10.0, -3.0 + 6.7 / (1.0 + std::exp(-(elevation + 6.0) / 2.2)));
 }
 
@@ -160,7 +157,7 @@ TEST(SteadySeries, ShortAndLongDusksFallWithoutSteps) {
   const std::vector<double> latitudes{0.0, 46.5, 65.0};
   for (const double latitude : tests::ScaledDown(latitudes, {65.0})) {
     Scene scene = BareScene(2.0, 0.0, 45.0, 60.0);
-    scene.place = PlaceFromDegrees(latitude, 8.0, 0.0);
+    scene.place = CheckedPlace({latitude, 8.0, 0.0});
     const SceneRenderer renderer(scene);
     const UtcTime sunset =  // of the day after a new moon
         *FindSunEvent(SunEvent::kSunset, scene.place, ParseInstant("2026-03-20T12:00:00Z"));

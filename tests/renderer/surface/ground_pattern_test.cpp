@@ -17,7 +17,7 @@ namespace alpenglow::renderer {
 namespace {
 
 LocalFrame FrameAt(double latitude, double longitude) {
-  return {kWgs84, PlaceFromDegrees(latitude, longitude, 0.0)};
+  return {kWgs84, CheckedPlace({latitude, longitude, 0.0})};
 }
 
 /// Two places some kilometres apart, in degrees.
@@ -88,7 +88,7 @@ TEST_F(PatternsOnAPath, ShowTheGroundOfStillsAtTheirPlaces) {
   const auto scene_at = [&](double latitude, double height_m) {
     Scene scene = BareScene(height_m, 0.0, -50.0, 20.0);
     scene.medium = MediumPreset("bruneton2017");
-    scene.place = PlaceFromDegrees(latitude, 8.0, 0.0);
+    scene.place = CheckedPlace({latitude, 8.0, 0.0});
     scene.terrain = {TerrainSource::Kind::kElevationModel, model, VoidPolicy::kFill};
     return scene;
   };
@@ -99,8 +99,8 @@ TEST_F(PatternsOnAPath, ShowTheGroundOfStillsAtTheirPlaces) {
   settings.samples_per_pixel = 4;
   CameraSample far(noon);
   const Camera& camera = scene_at(53.0, 2500.0).camera;
-  far.poses = {{PlaceFromDegrees(53.0, 8.0, 2500.0), camera.heading_rad, camera.pitch_rad, 0.0,
-                camera.fov_rad}};
+  far.poses = {
+      {Place{53.0, 8.0, 2500.0}, camera.heading_rad, camera.pitch_rad, 0.0, camera.fov_rad}};
   const Image frame = SceneRenderer(scene_at(52.0, 9000.0), nullptr).Render(far, settings);
   const Image still = SceneRenderer(scene_at(53.0, 2500.0), nullptr).Render(noon, settings);
   double squares = 0.0;

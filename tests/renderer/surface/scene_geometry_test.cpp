@@ -63,7 +63,7 @@ double HorizonOf(const std::function<bool(double elevation_rad)>& is_ground) {
 TEST(SceneGeometry, HorizonsOfEllipsoidAndSphericalSkyAgreeToAPixel) {
   for (const double latitude_deg : {0.0, 45.0, 90.0}) {
     for (const double height_m : {2.0, 10e3, 400e3}) {
-      const LocalFrame frame(kWgs84, {latitude_deg * kRadiansPerDegree, 0.0, 0.0});
+      const LocalFrame frame(kWgs84, {latitude_deg, 0.0, 0.0});
       const SceneGround ground{
           frame, Terrain(MeshFromElevation(SeaLevelAround(latitude_deg, height_m), frame)),
           height_m, "", true};
@@ -140,7 +140,7 @@ TEST(SceneGeometry, HitsLieOnTheRayAndAreLitOnTheSmoothSurface) {
   grid.step_lat_rad = grid.step_lon_rad = kCell_m / 6.37e6;
   grid.north_rad = 45.0 * kRadiansPerDegree + 100 * grid.step_lat_rad;
   grid.west_rad = -100 * grid.step_lon_rad;
-  const LocalFrame frame(kWgs84, {45.0 * kRadiansPerDegree, 0.0, 0.0});
+  const LocalFrame frame(kWgs84, {45.0, 0.0, 0.0});
   const SceneGround ground{frame, Terrain(MeshFromElevation(grid, frame)), 0.0, "", true};
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), 45.0 * kRadiansPerDegree);
   const SceneGeometry geometry(ground, medium, true);
@@ -160,7 +160,7 @@ TEST(SceneGeometry, HitsLieOnTheRayAndAreLitOnTheSmoothSurface) {
 // Long chords are below their rays, so that they meet more of the ground. Short chords are the
 // truth.
 TEST(SceneGeometry, LongChordsOfRaysMeetWhatShortOnesMeet) {
-  const LocalFrame frame(kWgs84, {0.8, 0.1, 0.0});
+  const LocalFrame frame(kWgs84, PlaceFromRadians(0.8, 0.1, 0.0));
   ElevationGrid grid;
   grid.rows = grid.columns = 121;
   grid.step_lat_rad = grid.step_lon_rad = 1.5e-4;  // 1 km

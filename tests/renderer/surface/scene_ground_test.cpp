@@ -95,7 +95,7 @@ ElevationGrid Earth(int columns) {
 void ExpectWindow(const ElevationGrid& grid, double latitude, double longitude, double reach_deg,
                   const std::array<int, 4>& expected) {
   const GridWindow window =
-      WindowAround(grid, PlaceFromDegrees(latitude, longitude, 0.0), reach_deg * kRadiansPerDegree);
+      WindowAround(grid, CheckedPlace({latitude, longitude, 0.0}), reach_deg * kRadiansPerDegree);
   EXPECT_EQ((std::array{window.first_column, window.first_row, window.columns, window.rows}),
             expected)
       << latitude << " " << longitude;
@@ -167,12 +167,12 @@ TEST_F(AMesh, HoldsEyesBetweenARoofAndTheGround) {
               HasSubstr("camera.height_m is 19.0; the ground there is at 20.0 m"));
   const SceneGround ground = LoadGround(SceneOn(tests::RoofObj(), 25.0));
   const auto on_path_at = [&](double height_m) {
-    return StandAt(ground, PlaceFromDegrees(46.5001, 8.0001, height_m)).eye.z;
+    return StandAt(ground, CheckedPlace({46.5001, 8.0001, height_m})).eye.z;
   };
   EXPECT_NEAR(on_path_at(25.0), 25.0, 0.01);
   EXPECT_THAT(tests::FaultOf([&] { return on_path_at(19.0); }),
               HasSubstr("the ground there is at 20.0 m"));
-  EXPECT_NEAR(GroundHeightUnder(ground, PlaceFromDegrees(46.5, 8.0, 25.0)), 35.0, 1e-6);
+  EXPECT_NEAR(GroundHeightUnder(ground, Place{46.5, 8.0, 25.0}), 35.0, 1e-6);
 }
 
 TEST_F(AMesh, HoldsALampBetweenARoofAndTheGround) {
@@ -181,8 +181,7 @@ TEST_F(AMesh, HoldsALampBetweenARoofAndTheGround) {
   const LampStage stage(scene, ground, scene.medium);
   const auto lamp_at = [&](const Height& height) {
     Light light;
-    light.latitude_rad = scene.place.latitude_rad;
-    light.longitude_rad = scene.place.longitude_rad;
+    light.place = scene.place;
     light.height = height;
     light.intensity_cd = 5000.0;
     scene.lights = {light};
@@ -231,12 +230,12 @@ Terrain TerrainOf(const std::vector<Square>& squares) {
   return Terrain(std::move(mesh));
 }
 
-const GeodeticPosition kTownPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
+const Place kTownPlace{46.5, 8.0, 0.0};
 const LocalFrame kFrame(kWgs84, kTownPlace);
 
 TEST(GroundHeights, GroundUnderARoofHasTwoHeights) {
   const Terrain town = TerrainOf({{1000.0F, 20.0F}, {50.0F, 35.0F}, {50.0F, 34.5F}});
-  GeodeticPosition between = kTownPlace;
+  Place between = kTownPlace;
   for (const double height_m : {-100.0, 25.0, 40.0, 9000.0}) {
     between.height_m = height_m;
     const auto ground = GroundHeightsAt(town, kFrame, between);
@@ -256,7 +255,7 @@ TEST(GroundHeights, AreOneBesideARoofAndNoneOutsideTheMesh) {
 
 TEST(GroundHeights, AreAlongTheLocalVertical) {
   const Terrain plate = TerrainOf({{200e3F, 0.0F}});
-  const GeodeticPosition far = kFrame.GeodeticFromEnu({{150e3, 0.0, 0.0}});
+  const Place far = kFrame.GeodeticFromEnu({{150e3, 0.0, 0.0}});
   const auto ground = GroundHeightsAt(plate, kFrame, far);
   ASSERT_TRUE(ground);
   EXPECT_NEAR(ground->highest_m, far.height_m, 1.0) << "the ellipsoid curves away under a plane";

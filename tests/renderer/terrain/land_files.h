@@ -121,9 +121,8 @@ inline LoadedHeights AllHeights(const LandSource& source) {
 }
 
 /// A place on the land, in samples.
-inline GeodeticPosition PlaceOfSample(double column, double row, double height_m) {
-  return {(kNorth_deg - row * kTileStep_deg) * kRadiansPerDegree,
-          (kWest_deg + column * kTileStep_deg) * kRadiansPerDegree, height_m};
+inline Place PlaceOfSample(double column, double row, double height_m) {
+  return {kNorth_deg - row * kTileStep_deg, kWest_deg + column * kTileStep_deg, height_m};
 }
 
 }  // namespace alpenglow::tests

@@ -39,7 +39,7 @@ TEST_F(LandSourceFiles, TheExtentOfAFileIsThatOfTheModel) {
 TEST(LandSourceRange, TheExtentOfTheRangeIsThatOfTheRange) {
   for (const double latitude_deg : {46.5, 89.8, -89.9}) {
     SCOPED_TRACE(latitude_deg);
-    const GeodeticPosition centre{latitude_deg * kRadiansPerDegree, 0.14, 0.0};
+    const Place centre{latitude_deg, 8.0, 0.0};
     ExpectSameGrid(ProceduralMountainsExtent(centre), ProceduralMountains(centre));
   }
 }
@@ -82,10 +82,9 @@ void ExpectHills(const LoadedHeights& heights, double west_deg, double east_deg,
   double worst_m = 0.0;
   for (int j = row; j < row + rows; ++j) {
     for (int i = column; i < column + columns; ++i) {
-      const GeodeticPosition place = lattice.PlaceOf(i, j, 0.0);
+      const Place place = lattice.PlaceOf(i, j, 0.0);
       const double error_m =
-          static_cast<double>(block.at(i, j)) - HillHeight(place.longitude_rad / kRadiansPerDegree,
-                                                           place.latitude_rad / kRadiansPerDegree);
+          static_cast<double>(block.at(i, j)) - HillHeight(place.longitude_deg, place.latitude_deg);
       ASSERT_FALSE(std::isnan(error_m)) << "a hole at column " << i << ", row " << j;
       worst_m = std::max(worst_m, std::abs(error_m));
     }
@@ -260,18 +259,18 @@ TEST_F(LandSourceFiles, TilesOfTwoSpacingsMeetOnTheFinerOnesLattice) {
 TEST_F(LandSourceFiles, TheGroundUnderAPlaceIsWhereTheRenderersRayMeetsIt) {
   WriteTile(folder_ / "a.tif", 0, 0);
   const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
-  const GeodeticPosition middle = PlaceOfSample(120.0, 120.0, 0.0);
+  const Place middle = PlaceOfSample(120.0, 120.0, 0.0);
   const LocalFrame frame(kWgs84, middle);
   const Terrain terrain(
       MeshFromElevation(ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid, frame));
   for (int i = 0; i < 500; ++i) {
     const double column = 0.3 + 239.4 * std::fmod(0.754877666 * i, 1.0);
     const double row = 0.3 + 239.4 * std::fmod(0.569840296 * i, 1.0);
-    const GeodeticPosition high = PlaceOfSample(column, row, 9000.0);
+    const Place high = PlaceOfSample(column, row, 9000.0);
     const LocalFrame there(kWgs84, high);
     const glm::dvec3 down = frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{{0.0, 0.0, -1.0}})).xyz;
     const auto hit = terrain.Intersect(frame.EnuFromGeodetic(high).xyz, down);
-    const auto ground = heights.HeightUnder(high.latitude_rad, high.longitude_rad);
+    const auto ground = heights.HeightUnder(high.latitude_rad(), high.longitude_rad());
     ASSERT_TRUE(hit && ground) << column << " " << row;
     ASSERT_NEAR(*ground, 9000.0 - hit->distance_m, 0.01)
         << "the renderer's vertices are floats: 1 mm at 10 km, more on a slope";
@@ -282,11 +281,11 @@ TEST_F(LandSourceFiles, TheGroundUnderAPlaceIsWhereTheRenderersRayMeetsIt) {
 TEST_F(LandSourceFiles, ASampledGridIsTheLandAroundAPlace) {
   WriteTiles(2);
   const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
-  const GeodeticPosition place = PlaceOfSample(240.0, 240.0, 0.0);
+  const Place place = PlaceOfSample(240.0, 240.0, 0.0);
   const auto near = heights.SampledGrid(place, 1000.0, 64);
   ASSERT_TRUE(near);
   EXPECT_LE(std::max(near->columns, near->rows), 64);
-  EXPECT_NEAR(*near->HeightAt(place.latitude_rad, place.longitude_rad),
+  EXPECT_NEAR(*near->HeightAt(place.latitude_rad(), place.longitude_rad()),
               static_cast<double>(HeightOfSample(240, 240)), 0.01)
       << "within 1 km every sample fits";
   const auto all = heights.SampledGrid(place, 30e3, 64);
@@ -321,7 +320,7 @@ TEST_P(PolarLand, ASampledGridHasTheLandOnAllSidesOfThePole) {
   const LoadedHeights heights = Heights();
   constexpr double kHalf_m = 150e3;
   for (const double from_pole : {0.0, 0.03, 0.3, 1.2}) {
-    const auto place = PlaceFromDegrees(GetParam() * (90.0 - from_pole), 50.0, 0.0);
+    const auto place = CheckedPlace({GetParam() * (90.0 - from_pole), 50.0, 0.0});
     const auto grid = heights.SampledGrid(place, kHalf_m, 128);
     ASSERT_TRUE(grid) << from_pole;
     EXPECT_LE(std::max(grid->columns, grid->rows), 128);
@@ -330,14 +329,12 @@ TEST_P(PolarLand, ASampledGridHasTheLandOnAllSidesOfThePole) {
     const LocalFrame frame(kWgs84, place);
     for (int i = 0; i < 200; ++i) {
       const double turn = 2.4 * i, away_m = 0.9 * kHalf_m * std::sqrt((i + 0.5) / 200.0);
-      const GeodeticPosition at =
+      const Place at =
           frame.GeodeticFromEnu({{away_m * std::cos(turn), away_m * std::sin(turn), 0.0}});
-      const auto height = grid->HeightAt(at.latitude_rad, at.longitude_rad);
-      ASSERT_TRUE(height) << from_pole << ": no ground at " << at.latitude_rad / kRadiansPerDegree
-                          << ", " << at.longitude_rad / kRadiansPerDegree;
-      EXPECT_NEAR(*height,
-                  static_cast<double>(HeightNearPole(at.latitude_rad / kRadiansPerDegree,
-                                                     at.longitude_rad / kRadiansPerDegree)),
+      const auto height = grid->HeightAt(at.latitude_rad(), at.longitude_rad());
+      ASSERT_TRUE(height) << from_pole << ": no ground at " << at.latitude_deg << ", "
+                          << at.longitude_deg;
+      EXPECT_NEAR(*height, static_cast<double>(HeightNearPole(at.latitude_deg, at.longitude_deg)),
                   8.0)
           << "the wave is curved by 50 m a square degree, over steps of up to 0.3 degrees";
     }
@@ -348,11 +345,11 @@ TEST_P(PolarLand, ASampledGridHasTheLandOnAllSidesOfThePole) {
 // Hard case 17.
 TEST_P(PolarLand, ASampledGridCrossesTheDateLine) {
   const LoadedHeights heights = Heights();
-  const auto place = PlaceFromDegrees(GetParam() * 86.0, 179.9, 0.0);
+  const auto place = CheckedPlace({GetParam() * 86.0, 179.9, 0.0});
   const auto grid = heights.SampledGrid(place, 50e3, 512);
   ASSERT_TRUE(grid);
   for (const double longitude : {176.0, 179.5, 179.9, -179.9, -179.0, -177.0}) {
-    const auto height = grid->HeightAt(place.latitude_rad, longitude * kRadiansPerDegree);
+    const auto height = grid->HeightAt(place.latitude_rad(), longitude * kRadiansPerDegree);
     ASSERT_TRUE(height) << longitude;
     EXPECT_NEAR(*height, static_cast<double>(HeightNearPole(GetParam() * 86.0, longitude)), 3.0)
         << "linear between samples 0.1 and 0.7 degrees apart";
@@ -403,9 +400,9 @@ TEST_F(LandSourceFiles, ASceneReadsAllModelsThatMayBeInSight) {
   SceneOptions options;
   for (const char* name : {"tile00.tif", "tile01.tif", "tile10.tif", "tile11.tif"})
     options.dem.push_back((folder_ / name).string());
-  const GeodeticPosition place = PlaceOfSample(300.0, 400.0, 0.0);
-  options.latitude = place.latitude_rad / kRadiansPerDegree;
-  options.longitude = place.longitude_rad / kRadiansPerDegree;
+  const Place place = PlaceOfSample(300.0, 400.0, 0.0);
+  options.latitude = place.latitude_deg;
+  options.longitude = place.longitude_deg;
   const ModelInSight named = ReadModelInSight(SceneFromOptions(options));
   const ElevationGrid& grid = named.model.grid;
   ASSERT_EQ(grid.columns, 2 * kTileSamples - 1);

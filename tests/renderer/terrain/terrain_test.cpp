@@ -307,7 +307,7 @@ TEST(Terrain, TheSeaHidesADistantMountainUpToTheRightHeight) {
         frame));
     const glm::dvec3 eye(0.0, 0.0, 2.0);
     const glm::dvec3 summit =
-        frame.EnuFromGeodetic(PlaceFromDegrees(45.0 + far_deg, 8.0, peak_m - 1.0)).xyz;
+        frame.EnuFromGeodetic(CheckedPlace({45.0 + far_deg, 8.0, peak_m - 1.0})).xyz;
     const auto hit = terrain.Intersect(eye, summit - eye);
     return hit.has_value() && hit->distance_m > 140e3;
   };
@@ -319,14 +319,14 @@ TEST(Terrain, TheSeaHidesADistantMountainUpToTheRightHeight) {
 TEST(Terrain, GroundAHundredKilometresAwayIsRightToAMillimetre) {
   // The ground is a smooth slope of 3 in 100 towards the south-west, which the ellipsoid bends down
   // by 785 m, with samples 300 m apart. The truth is computed in doubles, through ECEF.
-  const GeodeticPosition here{46.5 * kRadiansPerDegree, 8.0 * kRadiansPerDegree, 0.0};
+  const Place here{46.5, 8.0, 0.0};
   const LocalFrame frame(kWgs84, here);
   ElevationGrid grid;
   grid.rows = grid.columns = 41;
   grid.step_lat_rad = 4.7e-5;
   grid.step_lon_rad = 6.8e-5;
-  grid.north_rad = here.latitude_rad + 0.0112;  // 71 km north and, below, as much east
-  grid.west_rad = here.longitude_rad + 0.0162;
+  grid.north_rad = here.latitude_rad() + 0.0112;  // 71 km north and, below, as much east
+  grid.west_rad = here.longitude_rad() + 0.0162;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column)
       grid.height_m.push_back(static_cast<float>(500.0 + 6.5 * (column - row)));
@@ -335,8 +335,9 @@ TEST(Terrain, GroundAHundredKilometresAwayIsRightToAMillimetre) {
   double largest_m = 0.0;
   for (int row = 1; row + 1 < grid.rows; ++row) {
     for (int column = 1; column + 1 < grid.columns; ++column) {
-      const GeodeticPosition sample{grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column),
-                                    static_cast<double>(grid.height_m[grid.index(row, column)])};
+      const Place sample =
+          PlaceFromRadians(grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column),
+                           static_cast<double>(grid.height_m[grid.index(row, column)]));
       const glm::dvec3 truth = frame.EnuFromGeodetic(sample).xyz;
       for (const glm::dvec3& eye : {glm::dvec3(0.0, 0.0, 9000.0), truth + glm::dvec3(0, 0, 900.0),
                                     glm::dvec3(30e3, 90e3, 4e5)}) {

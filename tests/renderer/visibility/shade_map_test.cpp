@@ -150,12 +150,12 @@ TEST(SunShadowMap, ItsBoxHoldsAllShade) {
 
 TEST(HeightsAround, AreThoseOfTheMeshOfTheSameElevations) {
   ElevationGrid grid;
-  const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 0.0);
+  const Place place{46.5, 8.0, 0.0};
   grid.step_lon_rad = 0.002 * kRadiansPerDegree;
   grid.step_lat_rad = 0.0015 * kRadiansPerDegree;
   grid.columns = grid.rows = 201;
-  grid.west_rad = place.longitude_rad - 100.0 * grid.step_lon_rad;
-  grid.north_rad = place.latitude_rad + 100.0 * grid.step_lat_rad;
+  grid.west_rad = place.longitude_rad() - 100.0 * grid.step_lon_rad;
+  grid.north_rad = place.latitude_rad() + 100.0 * grid.step_lat_rad;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column)
       grid.height_m.push_back(

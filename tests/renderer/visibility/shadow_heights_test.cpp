@@ -228,7 +228,7 @@ TEST_F(ShadowHeightsOfFiles, ShaftsAroundFujiAreThoseOfOcclusionRays) {
   if (!std::filesystem::exists(tests::FujiModel()))
     GTEST_SKIP() << tests::FujiModel() << " is not there";
   Scene scene = BareScene(0.0, 0.0, 0.0, 60.0);
-  scene.place = PlaceFromDegrees(35.5, 138.75, 0.0);
+  scene.place = {35.5, 138.75, 0.0};
   scene.camera.height = {300.0, true};
   scene.terrain.kind = TerrainSource::Kind::kElevationModel;
   scene.terrain.file = tests::CoarseFuji(folder_);

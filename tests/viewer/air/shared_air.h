@@ -16,7 +16,7 @@ using namespace viewer;
 /// equal media get the same solution.
 inline FirstAir SharedAirOf(const Scene& scene) {
   static std::vector<FirstAir> solved;
-  const Medium medium = OnOsculatingSphere(scene.medium, scene.place.latitude_rad);
+  const Medium medium = OnOsculatingSphere(scene.medium, scene.place.latitude_rad());
   for (const FirstAir& air : solved) {
     if (air->air.medium() == medium) return air;
   }

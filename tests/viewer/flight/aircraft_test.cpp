@@ -17,8 +17,8 @@ namespace {
 constexpr double kStep_s = 1.0 / 120.0;
 constexpr double kG = kStandardGravity_m_per_s2;
 
-double NoGround(const GeodeticPosition&) { return -1e5; }
-double SeaLevel(const GeodeticPosition&) { return 0.0; }
+double NoGround(const Place&) { return -1e5; }
+double SeaLevel(const Place&) { return 0.0; }
 
 struct Flown {
   AircraftKind kind = kLightAircraft;
@@ -28,14 +28,14 @@ struct Flown {
   explicit Flown(double height_m = 1000.0, const AircraftKind& of = kLightAircraft,
                  double heading_rad = 0.0)
       : kind(of),
-        state(LevelFlight(of, kWgs84, PlaceFromDegrees(46.0, 8.0, height_m), heading_rad)) {}
+        state(LevelFlight(of, kWgs84, CheckedPlace({46.0, 8.0, height_m}), heading_rad)) {}
 
   void Fly(double seconds, const Stick& stick = {}) {
     const int steps = static_cast<int>(std::lround(seconds / kStep_s));
     for (int i = 0; i < steps; ++i) state = Stepped(state, kind, kWgs84, stick, ground, kStep_s);
   }
   [[nodiscard]] AircraftReadout Read() const { return ReadoutOf(state, kind, kWgs84); }
-  [[nodiscard]] GeodeticPosition Place() const { return GeodeticFromEcef(kWgs84, state.place); }
+  [[nodiscard]] Place Here() const { return GeodeticFromEcef(kWgs84, state.place); }
 };
 
 double Degrees(double radians) { return radians / kRadiansPerDegree; }
@@ -44,7 +44,7 @@ TEST(Aircraft, HandsOffItFliesStraightAndLevelForTenMinutes) {
   for (const AircraftKind& kind : {kLightAircraft, kSmallJet}) {
     Flown flown(1000.0, kind, 1.0);
     flown.Fly(600.0);
-    EXPECT_NEAR(flown.Place().height_m, 1000.0, 1.0)
+    EXPECT_NEAR(flown.Here().height_m, 1000.0, 1.0)
         << kind.name << ": without the bend of the earth in its law the jet would rise by 1.4 m";
     EXPECT_NEAR(flown.Read().speed_m_per_s, CruiseSpeed(kind, 1000.0), 0.5) << kind.name;
     EXPECT_NEAR(Degrees(flown.Read().bank_rad), 0.0, 0.1) << kind.name;
@@ -55,13 +55,13 @@ TEST(Aircraft, HandsOffItFliesStraightAndLevelForTenMinutes) {
 TEST(Aircraft, ItsPathBendsWithTheEarth) {
   // Eastwards from 46 N along a great circle: the sine rule says how far south it comes.
   Flown flown(3000.0, kSmallJet, 0.5 * kPi);
-  const GeodeticPosition start = flown.Place();
+  const Place start = flown.Here();
   flown.Fly(600.0);
   const double along = 600.0 * CruiseSpeed(kSmallJet, 3000.0) /
-                       (OsculatingRadius(kWgs84, start.latitude_rad) + 3000.0);
-  const double latitude = std::asin(std::sin(start.latitude_rad) * std::cos(along));
-  EXPECT_NEAR(Degrees(flown.Place().latitude_rad - start.latitude_rad),
-              Degrees(latitude - start.latitude_rad), 0.002)
+                       (OsculatingRadius(kWgs84, start.latitude_rad()) + 3000.0);
+  const double latitude = std::asin(std::sin(start.latitude_rad()) * std::cos(along));
+  EXPECT_NEAR(Degrees(flown.Here().latitude_rad() - start.latitude_rad()),
+              Degrees(latitude - start.latitude_rad()), 0.002)
       << "the ellipsoid differs from a sphere by 1/300 of 0.5 degrees";
   EXPECT_GT(flown.Read().heading_rad, 0.5 * kPi) << "north has turned under it";
 }
@@ -69,21 +69,20 @@ TEST(Aircraft, ItsPathBendsWithTheEarth) {
 // Hard case 27.
 TEST(Aircraft, OverThePoleAndTheDateLineItFliesStraightOn) {
   Flown flown(1000.0);
-  flown.state = LevelFlight(kLightAircraft, kWgs84, PlaceFromDegrees(89.99, 20.0, 1000.0), 0.0);
+  flown.state = LevelFlight(kLightAircraft, kWgs84, Place{89.99, 20.0, 1000.0}, 0.0);
   flown.Fly(60.0);
-  EXPECT_NEAR(Degrees(flown.Place().longitude_rad), -160.0, 0.5) << "beyond the pole";
+  EXPECT_NEAR(Degrees(flown.Here().longitude_rad()), -160.0, 0.5) << "beyond the pole";
   EXPECT_NEAR(std::abs(Degrees(flown.Read().heading_rad)), 180.0, 0.5) << "southwards";
-  EXPECT_NEAR(flown.Place().height_m, 1000.0, 1.0);
-  flown.state =
-      LevelFlight(kLightAircraft, kWgs84, PlaceFromDegrees(0.0, 179.999, 1000.0), 0.5 * kPi);
+  EXPECT_NEAR(flown.Here().height_m, 1000.0, 1.0);
+  flown.state = LevelFlight(kLightAircraft, kWgs84, Place{0.0, 179.999, 1000.0}, 0.5 * kPi);
   flown.Fly(60.0);
-  EXPECT_LT(flown.Place().longitude_rad, 0.0);
+  EXPECT_LT(flown.Here().longitude_rad(), 0.0);
   EXPECT_NEAR(Degrees(flown.Read().heading_rad), 90.0, 0.01);
   // At the pole itself there is no heading that could be wrong, but all numbers are there.
-  flown.state = LevelFlight(kLightAircraft, kWgs84, PlaceFromDegrees(90.0, 0.0, 1000.0), 1.0);
+  flown.state = LevelFlight(kLightAircraft, kWgs84, Place{90.0, 0.0, 1000.0}, 1.0);
   flown.Fly(1.0, {.roll_right = 1.0});
   EXPECT_TRUE(std::isfinite(flown.Read().heading_rad));
-  EXPECT_NEAR(flown.Place().height_m, 1000.0, 1.0);
+  EXPECT_NEAR(flown.Here().height_m, 1000.0, 1.0);
 }
 
 TEST(Aircraft, ATurnHasTheRadiusOfSpeedSquaredOverGTangentOfBank) {
@@ -101,7 +100,7 @@ TEST(Aircraft, ATurnHasTheRadiusOfSpeedSquaredOverGTangentOfBank) {
   EXPECT_NEAR(radius / (speed * speed / (kG * std::tan(bank))), 1.0, 0.01)
       << "gravity at 1 km is 3e-4 weaker, speed falls by 1 % in the turn";
   EXPECT_NEAR(after.load * std::cos(after.bank_rad), 1.0, 0.01) << "wings carry the weight";
-  EXPECT_NEAR(flown.Place().height_m, 1000.0, 15.0) << "and the height is kept";
+  EXPECT_NEAR(flown.Here().height_m, 1000.0, 15.0) << "and the height is kept";
 }
 
 TEST(Aircraft, BankIsHeldAfterTheStickIsLetGoLevelledWhenSmallAndLimitedWhenLarge) {
@@ -130,7 +129,7 @@ TEST(Aircraft, StalledWingsCarryTheWeightAtTheStallSpeedAndNotBelow) {
   EXPECT_NEAR(flown.Read().speed_m_per_s, stall, 0.05 * stall)
       << "the path has bent down by a degree since";
   EXPECT_TRUE(flown.Read().stalled);
-  EXPECT_LT(flown.Place().height_m, 1000.0);
+  EXPECT_LT(flown.Here().height_m, 1000.0);
 }
 
 TEST(Aircraft, WithoutPowerAndHandsItSettlesInAGlideAtTheAngleOfDragOverLift) {
@@ -138,7 +137,7 @@ TEST(Aircraft, WithoutPowerAndHandsItSettlesInAGlideAtTheAngleOfDragOverLift) {
   flown.state.throttle = 0.0;
   flown.Fly(180.0);
   const AircraftReadout glide = flown.Read();
-  const double q = 0.5 * StandardAirAt(flown.Place().height_m).density_kg_per_m3 *
+  const double q = 0.5 * StandardAirAt(flown.Here().height_m).density_kg_per_m3 *
                    glide.speed_m_per_s * glide.speed_m_per_s;
   const double lift = glide.load * kLightAircraft.mass_kg * kG / (q * kLightAircraft.wing_area_m2);
   const double drag = kLightAircraft.zero_lift_drag + kLightAircraft.induced_drag * lift * lift;
@@ -156,7 +155,7 @@ TEST(Aircraft, ClimbsAsFastAsTheSpareThrustSays) {
   flown.state.held_path_rad = 3.0 * kRadiansPerDegree;
   flown.Fly(120.0);
   const AircraftReadout climb = flown.Read();
-  const StandardAir air = StandardAirAt(flown.Place().height_m);
+  const StandardAir air = StandardAirAt(flown.Here().height_m);
   const double v = climb.speed_m_per_s;
   const double q_area = 0.5 * air.density_kg_per_m3 * v * v * kLightAircraft.wing_area_m2;
   const double weight = kLightAircraft.mass_kg * kG;
@@ -180,7 +179,7 @@ TEST(Aircraft, AClimbTooSteepForItsEngineIsForgottenWithoutHunting) {
       least = std::min(least, flown.Read().path_rad);
       most = std::max(most, flown.Read().path_rad);
       EXPECT_GT(flown.Read().speed_m_per_s,
-                1.15 * StallSpeed(kLightAircraft, flown.Place().height_m));
+                1.15 * StallSpeed(kLightAircraft, flown.Here().height_m));
     }
     EXPECT_LT(Degrees(most - least), 2.0) << pull_s << " s of pulling: the path is steady";
     EXPECT_GT(Degrees(least), -2.0) << pull_s;
@@ -194,8 +193,8 @@ TEST(Aircraft, EnergyWithoutDragAndThrustIsKeptThroughDivesAndTurns) {
   flown.kind.induced_drag = 0.0;
   flown.state.throttle = 0.0;
   const auto energy = [&] {
-    const double h = flown.Place().height_m;
-    const double r = OsculatingRadius(kWgs84, flown.Place().latitude_rad);
+    const double h = flown.Here().height_m;
+    const double r = OsculatingRadius(kWgs84, flown.Here().latitude_rad());
     return 0.5 * std::pow(flown.Read().speed_m_per_s, 2) + kG * h * r / (r + h);
   };
   const double before = energy();
@@ -266,7 +265,7 @@ TEST(Aircraft, LandsSoftlyRollsAndStandsWithBrakes) {
     flown.Fly(kStep_s, rolled ? Stick{.throttle_up = -1.0, .brake = 1.0} : Stick{});
     rolled |= flown.Read().contact == GroundContact::kRolling;
     ASSERT_NE(flown.Read().contact, GroundContact::kScraping);
-    ASSERT_GE(flown.Place().height_m, 1.49);
+    ASSERT_GE(flown.Here().height_m, 1.49);
   }
   EXPECT_TRUE(rolled);
   EXPECT_EQ(flown.Read().contact, GroundContact::kStanding);
@@ -283,14 +282,14 @@ TEST(Aircraft, TakesOffAgainWithFullThrottle) {
   flown.Fly(40.0, {.throttle_up = 1.0});
   flown.Fly(20.0, {.pitch_up = 0.08});
   EXPECT_EQ(flown.Read().contact, GroundContact::kNone);
-  EXPECT_GT(flown.Place().height_m, 20.0);
+  EXPECT_GT(flown.Here().height_m, 20.0);
 }
 
 TEST(Aircraft, AMountainStopsItAndItIsNeverInTheGround) {
   // A wall of 45 degrees to the north of the start.
   const double foot = 46.02 * kRadiansPerDegree;
-  const GroundHeight wall = [&](const GeodeticPosition& place) {
-    return std::max(0.0, (place.latitude_rad - foot) * 6.37e6);
+  const GroundHeight wall = [&](const Place& place) {
+    return std::max(0.0, (place.latitude_rad() - foot) * 6.37e6);
   };
   for (const double height_m : {50.0, 1000.0}) {
     Flown flown(height_m);
@@ -299,7 +298,7 @@ TEST(Aircraft, AMountainStopsItAndItIsNeverInTheGround) {
     for (int i = 0; i < 200 * 120; ++i) {
       flown.Fly(kStep_s);
       scraped |= flown.Read().contact == GroundContact::kScraping;
-      ASSERT_GE(flown.Place().height_m, wall(flown.Place()) + 1.49);
+      ASSERT_GE(flown.Here().height_m, wall(flown.Here()) + 1.49);
       ASSERT_LT(flown.Read().speed_m_per_s, 90.0) << "the wall gives no energy";
     }
     EXPECT_TRUE(scraped);
@@ -311,7 +310,7 @@ TEST(Aircraft, DropsFromRestOutOfThinAirAndFliesWhereItIsThick) {
   flown.state.velocity.xyz *= 0.01;
   flown.Fly(240.0);
   EXPECT_FALSE(flown.Read().stalled);
-  EXPECT_GT(flown.Place().height_m, 2000.0) << "it has caught itself";
+  EXPECT_GT(flown.Here().height_m, 2000.0) << "it has caught itself";
   EXPECT_NEAR(flown.Read().load, 1.0, 0.5);
 }
 
@@ -340,13 +339,12 @@ struct Held {
   Autopilot autopilot;
 
   Held(const AircraftKind& of, double height_m)
-      : kind(of), state(LevelFlight(of, kWgs84, PlaceFromDegrees(46.0, 8.0, height_m), 0.0)) {}
+      : kind(of), state(LevelFlight(of, kWgs84, CheckedPlace({46.0, 8.0, height_m}), 0.0)) {}
 
   void Step(const Stick& hands = {}) {
     const Autopilot::Flown flown = autopilot.Fly(state, kind, kWgs84, hands, kPilotStep_s);
     state = Stepped(
-        flown.state, kind, kWgs84, flown.stick, [](const GeodeticPosition&) { return -1e5; },
-        kPilotStep_s);
+        flown.state, kind, kWgs84, flown.stick, [](const Place&) { return -1e5; }, kPilotStep_s);
   }
   template <typename Visit>
   void Fly(double seconds, const Visit& visit) {

@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 
 CameraPose EyeAt(double latitude, double longitude, double height_m, double heading_deg = 0.0,
                  double pitch_deg = 0.0) {
-  return {PlaceFromDegrees(latitude, longitude, height_m), heading_deg * kRadiansPerDegree,
+  return {CheckedPlace({latitude, longitude, height_m}), heading_deg * kRadiansPerDegree,
           pitch_deg * kRadiansPerDegree};
 }
 
@@ -45,8 +45,8 @@ TEST(Flight, TheViewLooksWhereHeadingAndPitchSay) {
 TEST(Flight, APlacementChangesWhatItNamesAndRefusesWhatIsOutOfRange) {
   const CameraPose eye = EyeAt(46.0, 8.0, 500.0, 10.0, 5.0);
   const CameraPose north = Placed(eye, {.latitude_deg = 47.0, .heading_deg = 90.0});
-  EXPECT_NEAR(north.place.latitude_rad, 47.0 * kRadiansPerDegree, 1e-15);
-  EXPECT_NEAR(north.place.longitude_rad, 8.0 * kRadiansPerDegree, 1e-15);
+  EXPECT_NEAR(north.place.latitude_rad(), 47.0 * kRadiansPerDegree, 1e-15);
+  EXPECT_NEAR(north.place.longitude_rad(), 8.0 * kRadiansPerDegree, 1e-15);
   EXPECT_EQ(north.place.height_m, 500.0);
   EXPECT_NEAR(north.heading_rad, 0.5 * kPi, 1e-15);
   EXPECT_EQ(north.pitch_rad, eye.pitch_rad);
@@ -74,13 +74,13 @@ TEST(Flight, AnHourForwardIsTheDistanceOfTheSpeed) {
 TEST(Flight, AcrossTheDateLineAndOverThePoleTheDirectionIsKept) {
   CameraPose eye = EyeAt(0.0, 179.999, 1000.0, 90.0);
   for (int i = 0; i < 100; ++i) eye = Steer(eye, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
-  EXPECT_LT(eye.place.longitude_rad, 0.0) << "beyond the date line";
+  EXPECT_LT(eye.place.longitude_rad(), 0.0) << "beyond the date line";
   EXPECT_NEAR(eye.heading_rad, 0.5 * kPi, 1e-6);
 
   CameraPose north = EyeAt(89.999, 20.0, 1000.0, 0.0);
   for (int i = 0; i < 100; ++i) north = Steer(north, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
   EXPECT_NEAR(std::abs(north.heading_rad), kPi, 1e-3) << "over the pole, southwards";
-  EXPECT_NEAR(north.place.longitude_rad, (20.0 - 180.0) * kRadiansPerDegree, 1e-3);
+  EXPECT_NEAR(north.place.longitude_rad(), (20.0 - 180.0) * kRadiansPerDegree, 1e-3);
 }
 
 TEST(Flight, PitchStopsAtTheVertical) {
@@ -128,21 +128,20 @@ TEST(Flight, ExposureAdaptsHalfWayInAThirdOfASecond) {
 
 TEST(Flight, AnEyeAtAPlaceStandsOnTheRunwayAndFliesOverTheCity) {
   const CameraPose zurich =
-      viewer::EyeAt(PlaceNamed("LSZH"), {}, [](const GeodeticPosition&) { return 430.0; });
+      viewer::EyeAt(PlaceNamed("LSZH"), {}, [](const Place&) { return 430.0; });
   EXPECT_EQ(zurich.place.height_m, 432.0) << "over the terrain's runway";
   EXPECT_NEAR(zurich.heading_rad / kRadiansPerDegree, 155.0, 1e-9)
       << "runway 16, five degrees of it grid";
-  const CameraPose lhasa =
-      viewer::EyeAt(PlaceNamed("Lhasa"), {}, [](const GeodeticPosition&) { return 0.0; });
+  const CameraPose lhasa = viewer::EyeAt(PlaceNamed("Lhasa"), {}, [](const Place&) { return 0.0; });
   EXPECT_EQ(lhasa.place.height_m, 600.0) << "over the plain, where there is no terrain";
 }
 
 // --- the pilot ---
 
-double Sea(const GeodeticPosition&) { return 0.0; }
+double Sea(const Place&) { return 0.0; }
 
 CameraPose EyeAt(double height_m, double heading_deg = 0.0) {
-  return {PlaceFromDegrees(46.0, 8.0, height_m), heading_deg * kRadiansPerDegree};
+  return {CheckedPlace({46.0, 8.0, height_m}), heading_deg * kRadiansPerDegree};
 }
 double Apart(const CameraPose& a, const CameraPose& b) {
   return glm::length((EcefFromGeodetic(kWgs84, a.place) - EcefFromGeodetic(kWgs84, b.place)).xyz);
@@ -191,8 +190,8 @@ TEST(Pilot, TheAircraftMovesSmoothlyBetweenItsSteps) {
 }
 
 TEST(Pilot, TheFreeCameraIsNeverInTheGround) {
-  const GroundHeight ridge = [](const GeodeticPosition& place) {
-    return 1000.0 + 900.0 * std::sin(place.latitude_rad * 6e4);
+  const GroundHeight ridge = [](const Place& place) {
+    return 1000.0 + 900.0 * std::sin(place.latitude_rad() * 6e4);
   };
   Pilot pilot(EyeAt(2100.0), kWgs84);
   for (int i = 0; i < 100; ++i) {
@@ -279,8 +278,8 @@ TEST(Pilot, AThousandFeetHigherItFliesOnEvenFromTheGround) {
 
 std::shared_ptr<const CameraPath> TwoPoints() {
   return std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
-      {0.0, {PlaceFromDegrees(46.0, 8.0, 1000.0)}, ParseInstant("2026-06-21T04:00:00Z")},
-      {100.0, {PlaceFromDegrees(46.1, 8.0, 2000.0)}, ParseInstant("2026-06-21T04:01:40Z")}});
+      {0.0, {Place{46.0, 8.0, 1000.0}}, ParseInstant("2026-06-21T04:00:00Z")},
+      {100.0, {Place{46.1, 8.0, 2000.0}}, ParseInstant("2026-06-21T04:01:40Z")}});
 }
 
 TEST(Pilot, ATrackIsFollowedToItsEndAndKeepsTheFieldOfView) {
@@ -304,7 +303,7 @@ TEST(Pilot, ATrackIsFollowedToItsEndAndKeepsTheFieldOfView) {
 
 TEST(Pilot, AReplayIsSeenThroughItsOwnLens) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
-  CameraPose narrow{PlaceFromDegrees(46.0, 8.0, 1000.0)};
+  CameraPose narrow{Place{46.0, 8.0, 1000.0}};
   narrow.fov_rad = 0.3;
   pilot.SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{{0.0, narrow}}),
                  Pilot::Lens::kOfTrack);
@@ -314,7 +313,7 @@ TEST(Pilot, AReplayIsSeenThroughItsOwnLens) {
 
 TEST(Pilot, WhereTerrainIsLoadedOverTheAircraftItFliesOnOverIt) {
   double ground_m = 0.0;
-  const GroundHeight ground = [&](const GeodeticPosition&) { return ground_m; };
+  const GroundHeight ground = [&](const Place&) { return ground_m; };
   Pilot pilot(EyeAt(800.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, ground));
   ground_m = 2000.0;
@@ -327,12 +326,12 @@ TEST(Pilot, PutSomewhereElseItFliesOnThere) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
   CameraPose there = EyeAt(2500.0, 90.0);
-  there.place.longitude_rad = 3.0;
+  there.place.longitude_deg = 172.0;
   pilot.PutAt(there, Sea);
   EXPECT_EQ(pilot.mode(), FlightMode::kAircraft);
   EXPECT_LT(Apart(pilot.eye(), there), 1e-6);
   pilot.Advance({}, 1.0, Sea);
-  EXPECT_GT(pilot.eye().place.longitude_rad, 3.0);
+  EXPECT_GT(pilot.eye().place.longitude_rad(), 3.0);
   there.place.height_m = 400e3;
   pilot.PutAt(there, Sea);
   EXPECT_EQ(pilot.mode(), FlightMode::kFree) << "there is no air";
@@ -341,7 +340,7 @@ TEST(Pilot, PutSomewhereElseItFliesOnThere) {
 TEST(Pilot, AReplayGoesAsLowAsItWasFlownButNotIntoTheGround) {
   const auto shown_m = [](double flown_m) {
     Pilot pilot(EyeAt(1500.0), kWgs84);
-    const CameraPose low{PlaceFromDegrees(46.0, 8.0, flown_m)};
+    const CameraPose low{CheckedPlace({46.0, 8.0, flown_m})};
     pilot.SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{{0.0, low}}),
                    Pilot::Lens::kOfTrack);
     EXPECT_FALSE(pilot.Enter(FlightMode::kTrack, [](const auto&) { return 100.0; }));
@@ -354,7 +353,7 @@ TEST(Pilot, AReplayGoesAsLowAsItWasFlownButNotIntoTheGround) {
 
 // --- the clock ---
 
-const GeodeticPosition kZurich = PlaceFromDegrees(47.4582, 8.5555, 432.0);
+const Place kZurich{47.4582, 8.5555, 432.0};
 
 SceneClock ClockAt(const char* utc) { return SceneClock(ParseInstant(utc)); }
 std::string Shows(const SceneClock& clock) { return FormatUtc(clock.now()); }
@@ -445,7 +444,7 @@ TEST(Clock, TheEventsOfADayComeInTheirOrder) {
 
 TEST(Clock, InThePolarNightTheNextSunriseIsWeeksAwayAndAtThePoleMonths) {
   SceneClock clock = ClockAt("2026-12-01T12:00:00Z");
-  const GeodeticPosition tromso = PlaceFromDegrees(69.6492, 18.9553, 0.0);
+  const Place tromso{69.6492, 18.9553, 0.0};
   ASSERT_TRUE(clock.JumpToNext(SkyEvent::kSunrise, tromso));
   // The sun comes back to a sea horizon at 69.65 degrees north in the middle of January.
   EXPECT_EQ(Shows(clock).substr(0, 8), "2027-01-");
@@ -460,7 +459,7 @@ TEST(Clock, NoDayIsPassedOverOnTheWayToTheNextEvent) {
        {Case{89.9, 0.0, "2026-09-10T12:00:00Z"}, Case{78.0, 12000.0, "2026-08-15T12:00:00Z"},
         Case{78.0, 0.0, "2026-02-05T12:00:00Z"}, Case{66.0, 0.0, "2026-06-10T12:00:00Z"},
         Case{-67.0, 3000.0, "2026-12-25T12:00:00Z"}, Case{0.0, 0.0, "2026-12-25T12:00:00Z"}}) {
-    const GeodeticPosition place = PlaceFromDegrees(latitude, 15.0, height_m);
+    const Place place = CheckedPlace({latitude, 15.0, height_m});
     SceneClock clock = ClockAt(start);
     // The reference solution searches every day.
     std::optional<UtcTime> expected;
@@ -511,7 +510,7 @@ const UtcTime kStart = ParseInstant("2026-06-21T04:00:00Z");
 void Fly(FlightLog& log, double begin_s, int frames) {
   for (int frame = 0; frame < frames; ++frame) {
     const double seconds = begin_s + frame / 60.0;
-    log.Record(seconds, {PlaceFromDegrees(46.0 + kSpeed_deg_per_s * seconds, 8.0, 3000.0)},
+    log.Record(seconds, {CheckedPlace({46.0 + kSpeed_deg_per_s * seconds, 8.0, 3000.0})},
                AddSeconds(kStart, 60.0 * seconds));
   }
 }
@@ -523,7 +522,7 @@ TEST(FlightLog, HasAllOfTheFlightFromItsFirstFrameToItsLast) {
   EXPECT_EQ(path.begin_s(), 0.0);
   EXPECT_NEAR(path.end_s(), 100.0 / 60.0, 1e-9)
       << "the last frame too, though 1/60 s after another";
-  EXPECT_NEAR(path.PoseAt(1.0).place.latitude_rad,
+  EXPECT_NEAR(path.PoseAt(1.0).place.latitude_rad(),
               (46.0 + kSpeed_deg_per_s * 6.0) * kRadiansPerDegree, 1e-12);
   EXPECT_NEAR(SecondsBetween(kStart, *path.UtcAt(1.0)), 360.0, 1e-3);
 }
@@ -537,8 +536,7 @@ TEST(FlightLog, ALongFlightTakesNoMorePointsAndIsWholeStill) {
   EXPECT_GT(path.points().size(), kMost / 2 - 1);
   EXPECT_NEAR(path.end_s(), 100.0, 1e-9);
   for (const double at_s : {0.0, 13.0, 50.0, 99.0}) {
-    EXPECT_NEAR(path.PoseAt(at_s).place.latitude_rad / kRadiansPerDegree,
-                46.0 + kSpeed_deg_per_s * at_s, 1e-9)
+    EXPECT_NEAR(path.PoseAt(at_s).place.latitude_deg, 46.0 + kSpeed_deg_per_s * at_s, 1e-9)
         << "an even flight is between its points where it was";
   }
 }
@@ -547,7 +545,7 @@ TEST(FlightLog, WhereTheEyeStoodNothingHasBeenFlown) {
   FlightLog log;
   EXPECT_THROW((void)log.Path(), InputError);
   for (int frame = 0; frame < 100; ++frame)
-    log.Record(frame / 60.0, {PlaceFromDegrees(46.0, 8.0, 3000.0)}, AddSeconds(kStart, frame));
+    log.Record(frame / 60.0, {Place{46.0, 8.0, 3000.0}}, AddSeconds(kStart, frame));
   EXPECT_THROW((void)log.Path(), InputError);
   Fly(log, 2.0, 2);
   EXPECT_NO_THROW((void)log.Path());
@@ -565,7 +563,7 @@ class FlightRecords : public TemporaryFolder {
     const UtcTime start = ParseInstant("2026-06-21T04:00:00Z");
     for (int frame = 0; frame < frames; ++frame) {
       const double seconds = frame / 60.0;
-      const CameraPose eye{PlaceFromDegrees(46.0 + 1e-4 * seconds, 8.0, 3000.0)};
+      const CameraPose eye{CheckedPlace({46.0 + 1e-4 * seconds, 8.0, 3000.0})};
       recorder.Record(seconds, eye, AddSeconds(start, 60.0 * seconds));
     }
   }

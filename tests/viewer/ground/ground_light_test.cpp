@@ -101,7 +101,7 @@ class Blocks {
     glActiveTexture(GL_TEXTURE0 + kUnit);  // where the tables are uploaded
     const SkyIrradianceGradient open = UnoccludedSkyOver(lit_);
     sky_.Use(LightSource::kSun, {{std::shared_ptr<void>(), &lit_.sky()}, open});
-    GeodeticPosition eye = lit_.site().ground().frame.origin();
+    Place eye = lit_.site().ground().frame.origin();
     eye.height_m += eye_m_;
     const LocalFrame here(lit_.site().ground().frame.ellipsoid(), eye);
     Bind(program, "SkyByPixel", 5, sky_block_,

@@ -53,7 +53,7 @@ TEST_F(Instruments, EachTellsOfItsValueAndOfNoOther) {
        0.45, 0.4, 0.65, 0.6},
       {"throttle", [](HudModel& m) { m.flight.throttle = 0.9; }, 0.0, 0.0, 0.2, 0.2},
       {"local time", [](HudModel& m) { m.time.local = "19:00:00"; }, 0.8, 0.0, 1.0, 0.2},
-      {"latitude", [](HudModel& m) { m.latitude_rad = 0.3; }, 0.0, 0.8, 0.2, 1.0},
+      {"latitude", [](HudModel& m) { m.latitude_deg = 17.2; }, 0.0, 0.8, 0.2, 1.0},
       {"exposure", [](HudModel& m) { m.exposure.ev100 = 12.0; }, 0.8, 0.75, 1.0, 1.0},
       {"message",
        [](HudModel& m) {
@@ -220,14 +220,14 @@ TEST(Tapes, MarksAreRoundNumbers) {
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
 
 TEST(HudText, PlacesNameTheirHemisphere) {
-  EXPECT_EQ(LatitudeText(Radians(46.5)), "46.5000° N");
-  EXPECT_EQ(LatitudeText(Radians(-33.0)), "33.0000° S");
-  EXPECT_EQ(LongitudeText(Radians(-8.25)), "8.2500° W");
-  EXPECT_EQ(LongitudeText(Radians(179.9)), "179.9000° E");
-  EXPECT_EQ(LatitudeText(Radians(-90.0)), "90.0000° S");
+  EXPECT_EQ(LatitudeText(46.5), "46.5000° N");
+  EXPECT_EQ(LatitudeText(-33.0), "33.0000° S");
+  EXPECT_EQ(LongitudeText(-8.25), "8.2500° W");
+  EXPECT_EQ(LongitudeText(179.9), "179.9000° E");
+  EXPECT_EQ(LatitudeText(-90.0), "90.0000° S");
   for (const double longitude : {180.0, -180.0, 179.99999, -179.99999})
-    EXPECT_EQ(LongitudeText(Radians(longitude)), "180.0000° E") << "one meridian has one name";
-  EXPECT_EQ(LongitudeText(Radians(-0.00001)), "0.0000° E");
+    EXPECT_EQ(LongitudeText(longitude), "180.0000° E") << "one meridian has one name";
+  EXPECT_EQ(LongitudeText(-0.00001), "0.0000° E");
 }
 
 TEST(HudText, HeadingsAreThreeDigitsBelow360) {
@@ -350,7 +350,7 @@ DayStripRequest Alps() {
   // The light is not the request's own: it lasts as long as the tests.
   const std::shared_ptr<const MultipleScattering> light(std::shared_ptr<void>(),
                                                         &tests::Earth().multiple_scattering());
-  DayStripRequest request{light, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
+  DayStripRequest request{light, Place{46.0, 8.0, 500.0}, {}, 24};
   request.begin = ParseInstant("2026-03-19T23:28:00Z");  // midnight of the mean sun
   return request;
 }
@@ -411,7 +411,7 @@ TEST(DayStrip, ColoursAreThoseOfTheSky) {
 TEST(DayStrip, AStripIsMadeAnewOnlyForWhatItWouldShow) {
   const DayStripRequest shown = Alps();
   DayStripRequest request = shown;
-  request.place.latitude_rad += 0.002;
+  request.place.latitude_deg += 0.1;
   request.place.height_m += 50.0;
   request.begin = AddSeconds(request.begin, 1e-5);
   EXPECT_TRUE(LooksTheSame(shown, request)) << "a tenth of a degree is not seen";

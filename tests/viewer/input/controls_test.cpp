@@ -505,12 +505,11 @@ TEST(Action, TheManualShowsTheTable) {
 
 // --- pilot and clock under one hand ---
 
-double FlatSea(const GeodeticPosition&) { return 0.0; }
-double Airport(const GeodeticPosition&) { return 423.0; }
+double FlatSea(const Place&) { return 0.0; }
+double Airport(const Place&) { return 423.0; }
 
 FlightController NewFlightController(const GroundHeight& ground = FlatSea) {
-  return {
-      {PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84, ParseInstant("2026-06-21T12:00:00Z"), ground};
+  return {{Place{47.0, 8.0, 1500.0}}, kWgs84, ParseInstant("2026-06-21T12:00:00Z"), ground};
 }
 std::string Shows(const FlightController& controller) {
   return FormatUtc(controller.clock().now());
@@ -541,13 +540,13 @@ TEST(FlightController, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
   RecordedCommands flight;
   FlightController& controller = flight.controller();
   EXPECT_EQ(flight.Press("P"), "paused");
-  const double latitude = controller.pilot().eye().place.latitude_rad;
+  const double latitude = controller.pilot().eye().place.latitude_rad();
   controller.Advance({.camera = {.forward = 1.0}}, 1.0);
-  EXPECT_GT(controller.pilot().eye().place.latitude_rad, latitude);
+  EXPECT_GT(controller.pilot().eye().place.latitude_rad(), latitude);
   controller.Enter(FlightMode::kAircraft);
-  const double stands = controller.pilot().eye().place.latitude_rad;
+  const double stands = controller.pilot().eye().place.latitude_rad();
   controller.Advance({.look_right = 0.1}, 1.0);
-  EXPECT_EQ(controller.pilot().eye().place.latitude_rad, stands);
+  EXPECT_EQ(controller.pilot().eye().place.latitude_rad(), stands);
   EXPECT_GT(controller.pilot().eye().heading_rad, 0.05) << "one can look around";
   EXPECT_EQ(Shows(controller), "2026-06-21T12:00:00Z");
 }
@@ -615,7 +614,7 @@ TEST(FlightController, ALongFrameIsNotCutShort) {
 
 /// 10 s of the pilot that were an hour of the scene, with a narrow view.
 std::shared_ptr<const CameraPath> AnHour() {
-  CameraPose begin{PlaceFromDegrees(46.0, 8.0, 1000.0)}, end{PlaceFromDegrees(46.1, 8.0, 2000.0)};
+  CameraPose begin{Place{46.0, 8.0, 1000.0}}, end{Place{46.1, 8.0, 2000.0}};
   begin.fov_rad = end.fov_rad = 0.3;
   return std::make_shared<CameraPath>(
       std::vector<CameraPathPoint>{{0.0, begin, ParseInstant("2025-01-02T08:00:00Z")},
@@ -667,8 +666,8 @@ TEST(FlightController, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
 TEST(FlightController, ATrackWithInstantsSetsTheClockAndSkippingTakesItAlong) {
   FlightController controller = NewFlightController();
   controller.pilot().SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
-      {0.0, {PlaceFromDegrees(46.0, 8.0, 1000.0)}, ParseInstant("2025-01-02T08:00:00Z")},
-      {100.0, {PlaceFromDegrees(46.1, 8.0, 2000.0)}, ParseInstant("2025-01-02T08:01:40Z")}}));
+      {0.0, {Place{46.0, 8.0, 1000.0}}, ParseInstant("2025-01-02T08:00:00Z")},
+      {100.0, {Place{46.1, 8.0, 2000.0}}, ParseInstant("2025-01-02T08:01:40Z")}}));
   EXPECT_EQ(controller.Enter(FlightMode::kTrack), "track");
   EXPECT_EQ(Shows(controller), "2025-01-02T08:00:00Z");
   controller.Advance({}, 5.0);

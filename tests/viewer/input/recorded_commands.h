@@ -27,9 +27,9 @@ class RecordedCommands : public FlightCommands {
     std::vector<std::string> messages;
   };
 
-  explicit RecordedCommands(GroundHeight ground = [](const GeodeticPosition&) { return 0.0; })
-      : controller_({PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84,
-                    ParseInstant("2026-06-21T12:00:00Z"), std::move(ground)) {}
+  explicit RecordedCommands(GroundHeight ground = [](const Place&) { return 0.0; })
+      : controller_({Place{47.0, 8.0, 1500.0}}, kWgs84, ParseInstant("2026-06-21T12:00:00Z"),
+                    std::move(ground)) {}
 
   [[nodiscard]] FlightController& controller() override { return controller_; }
   [[nodiscard]] ExposureControl& exposure() override { return exposure_; }
@@ -43,7 +43,7 @@ class RecordedCommands : public FlightCommands {
   [[nodiscard]] const AirChoice& air_choice() const override { return air_; }
   void Use(const AirChoice& choice) override { requests.air = air_ = choice; }
   void ToggleLandingLight() override { requests.landing_light = true; }
-  void Place(const EyePlacement& placement) override { requests.place = placement; }
+  void MoveTo(const EyePlacement& placement) override { requests.place = placement; }
   void GoTo(const std::string& place) override { requests.named_place = place; }
   void SetTime(const std::string& text) override { requests.time = text; }
   void Request(const PictureOrder& picture) override { requests.picture = picture; }

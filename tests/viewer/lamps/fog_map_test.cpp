@@ -42,7 +42,8 @@ struct Stage {
   [[nodiscard]] Lighting Under(const glm::dvec3& to_sun) const {
     SunPosition sun;
     sun.distance_au = 1.0;
-    Lighting at = LightingOf(sun, UtcTime{60000, 0.0}, {.latitude_rad = 0.8}, scene.medium);
+    Lighting at =
+        LightingOf(sun, UtcTime{60000, 0.0}, PlaceFromRadians(0.8, 0.0, 0.0), scene.medium);
     at.source.direction = Unrefracted(to_sun);
     at.source.radius_rad = kFogSunRadius_rad;
     return at;

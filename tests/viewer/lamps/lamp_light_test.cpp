@@ -31,9 +31,10 @@ constexpr double kLitPixel_rad = 1e-3;
 Light LightAt(double north_m, double east_m, double height_m, double candela) {
   const double radius = 6371000.0;
   Light light;
-  light.latitude_rad = BareScene(0.0, 0.0, 0.0, 40.0).place.latitude_rad + north_m / radius;
-  light.longitude_rad = BareScene(0.0, 0.0, 0.0, 40.0).place.longitude_rad +
-                        east_m / (radius * std::cos(light.latitude_rad));
+  const Place eye = BareScene(0.0, 0.0, 0.0, 40.0).place;
+  const double latitude_rad = eye.latitude_rad() + north_m / radius;
+  light.place = PlaceFromRadians(
+      latitude_rad, eye.longitude_rad() + east_m / (radius * std::cos(latitude_rad)), 0.0);
   light.height = {height_m, false};
   light.intensity_cd = candela;
   light.radius_m = 0.1;
@@ -71,7 +72,7 @@ struct BothLamps {
   BothLamps(const Scene& of, SceneGround on)
       : scene(of),
         ground(std::move(on)),
-        medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
+        medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad())),
         colour(medium.wavelengths_nm),
         light(scene, ground, medium, colour),
         lamps(scene, ground, medium),
@@ -443,12 +444,11 @@ TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
 }
 
 TEST(LampView, OfAnEyeFarFromTheSceneTurnsItsDirectionsIntoEastNorthUpThere) {
-  const LocalFrame ground(kWgs84, PlaceFromDegrees(46.5, 8.0, 0.0));
-  const GeodeticPosition place = PlaceFromDegrees(47.0, 9.0, 1000.0);
+  const LocalFrame ground(kWgs84, Place{46.5, 8.0, 0.0});
+  const Place place{47.0, 9.0, 1000.0};
   const LampView view = LampViewFrom(ground, place, kLitPixel_rad);
   EXPECT_LT(glm::length(view.eye_m - ground.EnuFromGeodetic(place).xyz), 1e-6);
-  const glm::dvec3 up =
-      ground.EnuFromGeodetic(PlaceFromDegrees(47.0, 9.0, 2000.0)).xyz - view.eye_m;
+  const glm::dvec3 up = ground.EnuFromGeodetic(Place{47.0, 9.0, 2000.0}).xyz - view.eye_m;
   EXPECT_NEAR((view.eye_from_ground * up).z, 1000.0, 1e-3)
       << "a kilometre over the eye is up there";
 }
@@ -511,9 +511,9 @@ Scene Runway() {
   Scene scene = BareScene(6.0, 0.0, 0.0, 40.0);
   for (int i = 0; i < 8; ++i) {
     Light light;
-    light.latitude_rad = scene.place.latitude_rad + (80.0 + 60.0 * (i / 2)) / 6371e3;
-    light.longitude_rad =
-        scene.place.longitude_rad + (i % 2 == 0 ? 20.0 : -20.0) / (6371e3 * std::cos(0.81));
+    light.place = PlaceFromRadians(
+        scene.place.latitude_rad() + (80.0 + 60.0 * (i / 2)) / 6371e3,
+        scene.place.longitude_rad() + (i % 2 == 0 ? 20.0 : -20.0) / (6371e3 * std::cos(0.81)), 0.0);
     light.height = {0.5, false};
     light.intensity_cd = 600.0;
     scene.lights.push_back(light);

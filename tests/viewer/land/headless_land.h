@@ -35,7 +35,7 @@ class HeadlessTile : public HeadlessLand {
   }
 
   /// In air of three bands, quick to solve.
-  [[nodiscard]] Scene SceneOverTile(const GeodeticPosition& place, const Camera& camera) const {
+  [[nodiscard]] Scene SceneOverTile(const Place& place, const Camera& camera) const {
     Scene scene;
     scene.medium = MediumPreset("bruneton2017");
     scene.place = place;

@@ -238,7 +238,7 @@ TEST(LightOfVertices, SharesOfADarkSkyAreFiniteHalfFloats) {
 
 // --- grids over meshes ---
 
-const GeodeticPosition kPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
+const Place kPlace{46.5, 8.0, 0.0};
 const LocalFrame kFrame(kWgs84, kPlace);
 
 /// A square in the frame, its middle east of the origin, that rises to the east by a tenth.
@@ -265,7 +265,7 @@ TEST(MeshGrid, ASmallMeshIsSampledAllOverFromAnywhere) {
     EXPECT_GT(ShareOnMesh(*grid),
               0.9 * std::pow(static_cast<double>(half_m / (half_m + 3.0F)), 2.0))
         << half_m << ": the box around it is up to 3 m wider";
-    EXPECT_NEAR(*grid->HeightAt(kPlace.latitude_rad, kPlace.longitude_rad), 100.0, 0.01);
+    EXPECT_NEAR(*grid->HeightAt(kPlace.latitude_rad(), kPlace.longitude_rad()), 100.0, 0.01);
   }
 }
 
@@ -275,9 +275,9 @@ TEST(MeshGrid, AMeshFarAwayIsSampledWhereItIs) {
     const auto grid = GridOverMesh(mesh, kFrame, kPlace, 40e3, 64);
     ASSERT_TRUE(grid) << east_m;
     EXPECT_GT(ShareOnMesh(*grid), 0.9) << east_m;
-    const GeodeticPosition middle =
-        kFrame.GeodeticFromEnu({{static_cast<double>(east_m), 0.0, 100.0}});
-    EXPECT_NEAR(*grid->HeightAt(middle.latitude_rad, middle.longitude_rad), middle.height_m, 0.5);
+    const Place middle = kFrame.GeodeticFromEnu({{static_cast<double>(east_m), 0.0, 100.0}});
+    EXPECT_NEAR(*grid->HeightAt(middle.latitude_rad(), middle.longitude_rad()), middle.height_m,
+                0.5);
   }
 }
 
@@ -290,7 +290,7 @@ TEST(MeshGrid, OfAWideMeshTheSquareAroundThePlaceIsSampled) {
   EXPECT_EQ(ShareOnMesh(*grid), 1.0);
   const double width_m = 64 * grid->step_lat_rad * 6.37e6;
   EXPECT_NEAR(width_m, 80e3, 500.0);
-  EXPECT_NEAR(grid->north_rad - kPlace.latitude_rad, 32 * grid->step_lat_rad, 1e-9);
+  EXPECT_NEAR(grid->north_rad - kPlace.latitude_rad(), 32 * grid->step_lat_rad, 1e-9);
 }
 
 TEST(MeshGrid, AtTheEdgeOfAWideMeshTheSquareLiesOnIt) {
@@ -298,7 +298,8 @@ TEST(MeshGrid, AtTheEdgeOfAWideMeshTheSquareLiesOnIt) {
   const auto grid = GridOverMesh(mesh, kFrame, kPlace, 40e3, 65);
   ASSERT_TRUE(grid);
   EXPECT_GT(ShareOnMesh(*grid), 0.95);
-  EXPECT_LT(grid->west_rad - kPlace.longitude_rad, 50e3 / 6.37e6 / std::cos(kPlace.latitude_rad))
+  EXPECT_LT(grid->west_rad - kPlace.longitude_rad(),
+            50e3 / 6.37e6 / std::cos(kPlace.latitude_rad()))
       << "as near to the place as the mesh comes";
 }
 
@@ -311,7 +312,7 @@ TEST(MeshGrid, TheHighestSurfaceCounts) {
   two.triangles.push_back({4, 6, 7});
   const auto grid = GridOverMesh(Terrain(std::move(two)), kFrame, kPlace, 40e3, 32);
   ASSERT_TRUE(grid);
-  EXPECT_NEAR(*grid->HeightAt(kPlace.latitude_rad, kPlace.longitude_rad), 130.0, 1e-3);
+  EXPECT_NEAR(*grid->HeightAt(kPlace.latitude_rad(), kPlace.longitude_rad()), 130.0, 1e-3);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ constexpr int kWidth = 256, kHeight = 144;
 
 /// An eye over the land, and where it looks.
 struct LookOut {
-  GeodeticPosition place;
+  Place place;
   double heading_rad = 0.0, pitch_rad = 0.0, fov_rad = 1.2;
   glm::dvec2 shift{0.0};  // of a pixel's ray, in half widths and heights
 
@@ -80,7 +80,7 @@ class LandscapePictures : public HeadlessLand {
     block.view_up = padded(view.up);
     block.view_forward = padded(view.forward);
     block.eye = {1e-3 * eye.place.height_m, eye.shift.x, eye.shift.y,
-                 1e-3 * OsculatingRadius(kWgs84, eye.place.latitude_rad)};
+                 1e-3 * OsculatingRadius(kWgs84, eye.place.latitude_rad())};
     block.bend.x = block.eye.w;  // straight rays
     const GlBuffer buffer;
     glBindBufferBase(GL_UNIFORM_BUFFER, kView, buffer.id());
@@ -138,7 +138,7 @@ Misses MissesOf(const std::vector<glm::vec4>& picture, const LookOut& eye, const
 
 TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) {
   WriteTile(folder_ / "a.tif", 0, 0);
-  const GeodeticPosition middle = PlaceOfSample(120.0, 120.0, 0.0);
+  const Place middle = PlaceOfSample(120.0, 120.0, 0.0);
   const LocalFrame frame(kWgs84, middle);
   const Terrain terrain(
       MeshFromElevation(ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid, frame));
@@ -489,7 +489,7 @@ TEST_F(LandscapePictures, ThePlanetHidesWhatIsBeyondTheHorizonButNotWhatRisesOve
   WriteTile(folder_ / "far.tif", -kHalf, kNorth - kHalf, kSamples, kStride,
             Mountain(0, kNorth, 8000.0));
   Landscape land(Folder(), {96.0}, kWgs84);
-  const GeodeticPosition eye = PlaceOfSample(0.0, 0.0, 3000.0);
+  const Place eye = PlaceOfSample(0.0, 0.0, 3000.0);
   const auto pixels = [&](double heading_rad) {
     const auto picture = Settled(land, {eye, heading_rad, -0.03, 0.2});
     EXPECT_GT(land.Figures().triangles, 0) << "it stands in the view";
@@ -513,7 +513,7 @@ TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
 }
 
 TEST_F(LandscapePictures, TheMadeUpRangeSaysSo) {
-  Landscape land({{}, VoidPolicy::kFill, GeodeticPosition{0.81, 0.14, 0.0}}, {64.0}, kWgs84);
+  Landscape land({{}, VoidPolicy::kFill, Place{0.81, 0.14, 0.0}}, {64.0}, kWgs84);
   EXPECT_THAT(land.PollNotes(), ElementsAre(HasSubstr("made up")));
 }
 

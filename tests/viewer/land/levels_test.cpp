@@ -53,9 +53,8 @@ struct LevelCase {
 
 // Eyes low and high, with everything there and with levels that do not reach out yet.
 // @param place_of  a place for a column and a row from -90 to 810.
-std::vector<LevelCase> CasesOn(
-    const LandTiles& tiles, const ChunkTree& tree,
-    const std::function<GeodeticPosition(double column, double row)>& place_of) {
+std::vector<LevelCase> CasesOn(const LandTiles& tiles, const ChunkTree& tree,
+                               const std::function<Place(double column, double row)>& place_of) {
   std::vector<LevelCase> cases;
   for (int i = 0; i < 60; ++i) {
     const double column = 900.0 * std::fmod(0.7549 * i, 1.0) - 90.0;
@@ -163,8 +162,8 @@ INSTANTIATE_TEST_SUITE_P(BothPoles, PolarLevels, ::testing::Values(1.0, -1.0));
 // Hard case 17.
 TEST_P(PolarLevels, LevelsMeetAroundThePoleAndAcrossTheDateLine) {
   const auto near_pole = [](double column, double row) {
-    return PlaceFromDegrees(GetParam() * (90.0 - 0.7 * std::abs(row) / 810.0),
-                            std::remainder(180.0 + 0.2 * column, 360.0), 0.0);
+    return CheckedPlace({GetParam() * (90.0 - 0.7 * std::abs(row) / 810.0),
+                         std::remainder(180.0 + 0.2 * column, 360.0), 0.0});
   };
   EXPECT_GT(CheckBorders(*tree_, CasesOn(*tiles_, *tree_, near_pole)), 100);
 }
@@ -173,7 +172,7 @@ TEST_P(PolarLevels, LevelsMeetAroundThePoleAndAcrossTheDateLine) {
 TEST_P(PolarLevels, LandIsAsNearAcrossThePoleAsOnThisSide) {
   const auto all = [](const ChunkKey&) { return true; };
   for (const double longitude : {0.0, 75.0, 180.0}) {
-    const LandEye eye(tiles_->lattice(), PlaceFromDegrees(GetParam() * 89.99, longitude, 0.0), 0.0,
+    const LandEye eye(tiles_->lattice(), CheckedPlace({GetParam() * 89.99, longitude, 0.0}), 0.0,
                       1e6);
     const auto drawn =
         DrawnChunks(*tree_, eye, RangesOf(DemandOf(*tree_, eye, 64.0, all).reach_m, eye), all);
@@ -220,8 +219,8 @@ TEST_P(PolarLevels, TheDistanceOfAChunkIsThatOfItsNearestPoint) {
   for (int i = 0; i < 200; ++i) {
     const auto random = [&](double factor) { return std::fmod(factor * (i + 1), 1.0); };
     const LandEye eye(lattice,
-                      PlaceFromDegrees(GetParam() * (90.0 - 1.0 * random(0.7549)),
-                                       360.0 * random(0.5698) - 180.0, 0.0),
+                      CheckedPlace({GetParam() * (90.0 - 1.0 * random(0.7549)),
+                                    360.0 * random(0.5698) - 180.0, 0.0}),
                       0.0, 1e6);
     const double first = std::floor(480.0 * random(0.61)),
                  row = 1.0 + std::floor(30.0 * random(0.33));

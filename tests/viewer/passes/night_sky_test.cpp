@@ -145,12 +145,12 @@ TEST(StarPoints, TheSkyTurnsWestwardsAboutThePoleOnceASiderealDay) {
 }
 
 TEST(StarPoints, AListOfHalfAMinuteAgoStandsWhereTheNextOneDoes) {
-  const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 2000.0);
+  const Place place{46.5, 8.0, 2000.0};
   const BandColour colour({440.0, 490.0, 550.0, 630.0});
   const RefractedView view(MediumPreset("earth"), place.height_m);
   const auto before = StarLightsOver(place, {61058, 73800.0}, view, colour, 1.5);
   const auto now = StarLightsOver(place, {61058, 73830.0}, view, colour, 1.5);
-  const glm::dmat3 turn = TurnOfSky(place.latitude_rad, 30.0);
+  const glm::dmat3 turn = TurnOfSky(place.latitude_rad(), 30.0);
   ASSERT_EQ(before.size(), now.size());
   int seen = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {
@@ -166,11 +166,11 @@ TEST(StarPoints, AListOfHalfAMinuteAgoStandsWhereTheNextOneDoes) {
 TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
   const BandColour colour({440.0, 490.0, 550.0, 630.0});
   for (const double height_m : {2.0, 10e3}) {
-    const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, height_m);
+    const Place place = CheckedPlace({46.5, 8.0, height_m});
     const RefractedView view(MediumPreset("earth"), place.height_m);
     const auto before = StarLightsOver(place, {61058, 73800.0}, view, colour, 5.0);
     const auto now = StarLightsOver(place, {61058, 73830.0}, view, colour, 5.0);
-    const StarrySky sky{before, TurnOfSky(place.latitude_rad, 30.0), 0.0, {}, 0.0, &view};
+    const StarrySky sky{before, TurnOfSky(place.latitude_rad(), 30.0), 0.0, {}, 0.0, &view};
     int low = 0;
     for (std::size_t i = 0; i < now.size(); ++i) {
       const double over_rad = std::asin(now[i].direction.z) - view.horizon_rad();
@@ -187,11 +187,11 @@ TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
 // --- the night sky ---
 
 TEST(NightSkyMap, LampsOfTownsAreInTheAirAsTheRendererHasThem) {
-  const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 500.0);
+  const Place eye{46.5, 8.0, 500.0};
   const UtcTime now{61058, 73800.0};
   const Medium medium = MediumPreset("earth");
   const BandColour colour(medium.wavelengths_nm);
-  const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
+  const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad()));
   const NightSkyMap dark = NightSkyMapOver(eye, now, medium, colour);
   const NightSkyMap city = NightSkyMapOver(eye, now, medium, colour, {18.0, 400.0});
   const BandLight towns = Skyglow(18.0, 400.0, air, colour);
@@ -203,14 +203,14 @@ TEST(NightSkyMap, LampsOfTownsAreInTheAirAsTheRendererHasThem) {
 }
 
 TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
-  const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 3000.0);
+  const Place eye{46.5, 8.0, 3000.0};
   const UtcTime now{61058, 73800.0};
   const Medium medium = MediumPreset("earth");
   const BandColour colour(medium.wavelengths_nm);
   const NightSkyMap floor = NightSkyMapOver(eye, now, medium, colour);
-  const NightLight reference(NightSky(eye, now),
-                             SingleScattering<float>(OnOsculatingSphere(medium, eye.latitude_rad)),
-                             colour, {0.0, 0.0, 1.0}, eye.height_m);
+  const NightLight reference(
+      NightSky(eye, now), SingleScattering<float>(OnOsculatingSphere(medium, eye.latitude_rad())),
+      colour, {0.0, 0.0, 1.0}, eye.height_m);
   EXPECT_EQ(floor.scattered.x, reference.scattered()[0]);
   EXPECT_EQ(floor.level.x, reference.OnSurface(1.0)[0]);
   double sum = 0.0;
@@ -237,12 +237,12 @@ TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
 
 // --- the lights of the sky ---
 
-double SunElevationAt(const GeodeticPosition& eye, const UtcTime& now) {
+double SunElevationAt(const Place& eye, const UtcTime& now) {
   return ApparentSunAt(eye, now).elevation_rad;
 }
 
 // Returns the instant of the evening at which the sun has sunk to an elevation.
-UtcTime WhenTheSunIsAt(double elevation_rad, const GeodeticPosition& eye, const UtcTime& noon) {
+UtcTime WhenTheSunIsAt(double elevation_rad, const Place& eye, const UtcTime& noon) {
   double before_s = 0.0, after_s = 43200.0;
   while (after_s - before_s > 1.0) {
     const double middle_s = 0.5 * (before_s + after_s);
@@ -259,9 +259,9 @@ double BeamIlluminance(const DistantLight& light, const AirOfSky& air, double al
 }
 
 TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
-  const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
+  const Place eye{46.5, 8.0, 2000.0};
   const AirOfSky air(std::make_shared<const SolvedAir>(
-      OnOsculatingSphere(MediumPreset("earth"), eye.latitude_rad), AirSolution::kDraft));
+      OnOsculatingSphere(MediumPreset("earth"), eye.latitude_rad()), AirSolution::kDraft));
   double most = 0.0;
   int moonlit = 0;
   for (int day = 0; day < 30; ++day) {
@@ -310,7 +310,7 @@ TEST(HasSetOnGround, OfALightOfWhichNoGroundInReachSeesTheLimb) {
 TEST(LightsOfSky, WhenTheMoonIsFirstNoSummitIsLitByTheSun) {
   constexpr double kHighestSummit_m = 8849.0, kRadius_m = 6371e3;
   const double dip = std::acos(kRadius_m / (kRadius_m + kHighestSummit_m));
-  const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
+  const Place eye{46.5, 8.0, 2000.0};
   const AirOfSky air(std::make_shared<const SolvedAir>(MediumPreset("earth"), AirSolution::kDraft));
   // The moon is full on the 3rd of January 2026 and rises before the sun has set.
   const UtcTime now = WhenTheSunIsAt(-3.51 * kRadiansPerDegree, eye, UtcTime{61043, 41400.0});

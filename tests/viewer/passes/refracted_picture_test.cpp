@@ -201,7 +201,7 @@ using RefractedPeak = tests::HeadlessWith<TemporaryFolder>;
 
 TEST_F(RefractedPeak, BehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
   const Medium medium =
-      OnOsculatingSphere(MediumPreset("earth"), BareScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad);
+      OnOsculatingSphere(MediumPreset("earth"), BareScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad());
   const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   for (const tests::FarPeak& peak :
        {tests::FarPeak{20.0, 110e3, 650.0}, tests::FarPeak{3000.0, 300e3, 800.0}}) {

@@ -258,7 +258,7 @@ TEST_F(LandPictures, WithGlossAndLampsAreWithinTheNumbersOfTheManual) {
 // A new moon stands 7 degrees beside the sun, and the pixels are 2.4 degrees wide.
 TEST_F(SkyPainterTest, NoPixelGetsTheLightOfSunAndMoonTwice) {
   Scene scene = BareScene(100.0, 180.0, 60.0, 90.0);
-  scene.place = PlaceFromDegrees(46.5, 8.0, 0.0);
+  scene.place = {46.5, 8.0, 0.0};
   const PaintedView view = ViewOf(scene, 100.0, ParseInstant("2026-06-15T11:30:00Z"), {48, 27});
   SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kMedium),
                      tests::SharedAirOf(scene));
@@ -450,7 +450,7 @@ std::vector<double> ChangesIn(const Scene& scene, const FlightOver& flight) {
   const auto point = [&](double time_s, double latitude, double longitude, double heading) {
     const Camera look = CameraFromDegrees({}, heading, -40.0, 0.0, 20.0);
     return CameraPathPoint{time_s,
-                           {PlaceFromDegrees(latitude, longitude, 2600.0), look.heading_rad,
+                           {CheckedPlace({latitude, longitude, 2600.0}), look.heading_rad,
                             look.pitch_rad, 0.0, look.fov_rad}};
   };
   const CameraPath path(
@@ -491,7 +491,7 @@ TEST_F(SkyPainterTest, FlightsOverPolesAndTheDateLineAreContinuous) {
     for (const bool has_land : {false, true}) {
       Scene scene = BareScene(2600.0, 0.0, -40.0, 20.0);
       scene.medium = MediumPreset("bruneton2017");
-      scene.place = PlaceFromDegrees(flight.from_latitude, flight.from_longitude, 0.0);
+      scene.place = CheckedPlace({flight.from_latitude, flight.from_longitude, 0.0});
       if (has_land) {
         if (flight.hemisphere != 0.0) {
           tests::WritePolarModel(model, flight.hemisphere, 0.01);
@@ -581,7 +581,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
   const UtcTime now = ParseInstant("2026-08-12T18:23:00Z");
   // The disk has a radius of more than 2.5 pixels, and is drawn by rays in both programs.
   Scene scene = BareScene(2.0, 284.0, 9.0, tests::ScaledDown(8.0, 5.0));
-  scene.place = PlaceFromDegrees(42.3439, -3.6969, 0.0);
+  scene.place = {42.3439, -3.6969, 0.0};
   ExpectWithin(BothPrograms(scene, now).Difference(ViewOf(scene, 2.0, now)), {0.0031, 0.0041},
                "tables between nodes, within four degrees of the sun");
   const SunPosition sun = ApparentSunAt(scene.place, now);
@@ -611,7 +611,7 @@ TEST_F(SkyPainterTest, TheMoonOfTheEarthIsNotInTheSkyOfMars) {
 
 TEST(FrameSky, OnMarsThereIsNeitherAMoonNorAnEclipseNorAnotherLight) {
   const AirOfSky mars(std::make_shared<const SolvedAir>(MediumPreset("mars"), AirSolution::kDraft));
-  const GeodeticPosition burgos = PlaceFromDegrees(42.3439, -3.6969, 0.0);
+  const Place burgos{42.3439, -3.6969, 0.0};
   const FrameSky sky = FrameSkyAt(burgos, ParseInstant("2026-08-12T18:23:00Z"), mars);
   EXPECT_FALSE(sky.moon);
   EXPECT_FALSE(sky.is_eclipse);
@@ -765,7 +765,7 @@ TEST_F(DrapedLand, ColoursLieWhereTheRenderersDoFromWhereverTheyAreSeen) {
       both.Difference(view), {0.010, 0.115},
       "half of it is of bare land; sixteen rays a pixel on rims of squares. A quarter of a "
       "pixel of colours aside, it would be five times as much");
-  const GeodeticPosition elsewhere = tests::PlaceOfSample(220.0, 30.0, 4500.0);
+  const Place elsewhere = tests::PlaceOfSample(220.0, 30.0, 4500.0);
   view.eye.place = elsewhere;
   view.eye.heading_rad = 220.0 * kRadiansPerDegree;
   ExpectWithin(both.Difference(view), {0.016, 0.15}, "in the frame of the scene's place still");
@@ -808,8 +808,7 @@ constexpr const char* kDuskAndMoon = "2026-12-23T16:25:00Z";
 TEST_F(BarePlanet, IsLitByLampsAsTheRenderersIs) {
   Scene scene = NightOnThePlanet(0.2);
   Light light;
-  light.latitude_rad = scene.place.latitude_rad + 0.0002 * kRadiansPerDegree;
-  light.longitude_rad = scene.place.longitude_rad;
+  light.place = {scene.place.latitude_deg + 0.0002, scene.place.longitude_deg, 0.0};
   light.height = {8.0, false};
   light.intensity_cd = 3000.0;
   light.radius_m = 0.1;

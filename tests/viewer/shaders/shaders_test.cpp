@@ -173,8 +173,7 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
 Scene LampScene(bool with_fog) {
   Scene scene = BareScene(10.0, 0.0, 0.0, 40.0);
   scene.lights.emplace_back();
-  scene.lights.back().latitude_rad = scene.place.latitude_rad;
-  scene.lights.back().longitude_rad = scene.place.longitude_rad;
+  scene.lights.back().place = scene.place;
   scene.lights.back().height = {5.0, false};
   scene.lights.back().intensity_cd = 1000.0;
   if (!with_fog) return scene;
@@ -538,8 +537,7 @@ std::vector<float> GroundValues(const MountainSurface& surface, const std::strin
 TEST_F(GroundCoverBlock, AlbedoIsThatOfTheRendererInEverySeason) {
   const std::vector<double> wavelengths = WavelengthSet(4);
   for (const int day : {61081, 61161, 61212, 61334}) {  // February, May, June, October 2026
-    const MountainSurface surface(wavelengths,
-                                  CoverInSeason(PlaceFromDegrees(46.5, 8.0, 0.0), day));
+    const MountainSurface surface(wavelengths, CoverInSeason(Place{46.5, 8.0, 0.0}, day));
     const std::vector<float> on_gpu = GroundValues(
         surface,
         "GroundAlbedo(vec3(a[0], a[1], 0.1 * a[2]), a[2], vec2(a[3], a[0] > 0.0 ? 0.4 : -0.4), "
@@ -567,8 +565,7 @@ TEST_F(GroundCoverBlock, WavesAreThoseOfTheRenderer) {
 }
 
 TEST_F(GroundCoverBlock, ReliefIsThatOfTheRenderer) {
-  const MountainSurface surface(WavelengthSet(4),
-                                CoverInSeason(PlaceFromDegrees(46.5, 8.0, 0.0), 61212));
+  const MountainSurface surface(WavelengthSet(4), CoverInSeason(Place{46.5, 8.0, 0.0}, 61212));
   const std::vector<float> east = GroundValues(surface,
                                                "DetailedNormal(vec3(a[0], a[1], 0.1 * a[2]), "
                                                "vec3(sqrt(1.0 - a[3] * a[3]), 0.0, a[3]), a[4]).x");
