@@ -28,6 +28,7 @@ constexpr double kPlotHeight = kTop + kPanels * kPanelHeight + (kPanels - 1) * k
 // (2008), Color Universal Design, which colour-blind readers can distinguish.
 constexpr char kSunColour[] = "#d55e00", kMoonColour[] = "#0072b2", kLightColour[] = "#b87f00",
                kEvColour[] = "#4b3fa7";
+constexpr char kGridLine[] = "stroke=\"#888\" stroke-width=\"0.5\"";
 
 using Value = std::function<std::optional<double>(const PlottedMoment&)>;
 
@@ -44,17 +45,6 @@ struct DayPanel {
   double low, high;  // minimum range of the axis
   std::vector<LightLevel> levels = {};
 };
-
-std::string TextAt(double x, double y, const std::string& more, const std::string& text) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, more, XmlText(text));
-}
-
-std::string PlotLineOf(double x0, double y0, double x1, double y1) {
-  return fmt::format(
-      "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#888\" "
-      "stroke-width=\"0.5\"/>\n",
-      x0, y0, x1, y1);
-}
 
 /// The time axis.
 class TimeAxis {
@@ -150,15 +140,13 @@ struct PlotRange {
 
 std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& moments,
                       const TimeAxis& time, const std::function<double(double)>& y) {
-  std::string text, run;
-  int points = 0;
+  std::string text;
+  std::vector<SvgPoint> run;
   const auto end_run = [&] {
-    if (points > 1)
-      text +=
-          fmt::format("<polyline fill=\"none\" stroke-width=\"2\" stroke=\"{}\" points=\"{}\"/>\n",
-                      curve.colour, run);
+    if (run.size() > 1)
+      text += SvgPolyline(
+          run, fmt::format("fill=\"none\" stroke-width=\"2\" stroke=\"{}\"", curve.colour));
     run.clear();
-    points = 0;
   };
   for (const PlottedMoment& moment : moments) {
     const std::optional<double> value = curve.value(moment);
@@ -166,11 +154,10 @@ std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& mome
       end_run();
       continue;
     }
-    const double at_x = time.X(moment.instant), at_y = y(*value);
-    run += fmt::format("{:.1f},{:.1f} ", at_x, at_y);
-    if (++points == 1)  // also marks an isolated frame
+    const SvgPoint& at = run.emplace_back(SvgPoint{time.X(moment.instant), y(*value)});
+    if (run.size() == 1)  // also marks an isolated frame
       text += fmt::format("<circle fill=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.5\"/>\n",
-                          curve.colour, at_x, at_y);
+                          curve.colour, at.x, at.y);
   }
   end_run();
   return text;
@@ -180,13 +167,13 @@ std::string GridText(const DayPanel& panel, const PlotRange& range, const TimeAx
                      double top, const std::function<double(double)>& y) {
   std::string text;
   for (double value = range.low; value <= range.high + 1e-9; value += range.step) {
-    text += PlotLineOf(kLeft, y(value), kWidth - kRight, y(value));
+    text += SvgLine({kLeft, y(value)}, {kWidth - kRight, y(value)}, kGridLine);
     const std::string name =
         panel.logarithmic ? fmt::format("1e{:.0f}", value) : fmt::format("{:.0f}", value);
-    text += TextAt(kLeft - 6.0, y(value) + 4.0, "text-anchor=\"end\"", name);
+    text += SvgText({kLeft - 6.0, y(value) + 4.0}, "text-anchor=\"end\"", name);
   }
   for (const auto& tick : time.Ticks())
-    text += PlotLineOf(time.X(tick.first), top, time.X(tick.first), top + kPanelHeight);
+    text += SvgLine({time.X(tick.first), top}, {time.X(tick.first), top + kPanelHeight}, kGridLine);
   return text;
 }
 
@@ -197,10 +184,10 @@ std::string LevelText(const LightLevel& level, const std::function<double(double
              "<rect stroke=\"none\" fill=\"#7a1f5c\" fill-opacity=\"0.35\" x=\"{}\" y=\"{:.1f}\" "
              "width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
              kLeft, high, kWidth - kLeft - kRight, std::max(low - high, 1.0)) +
-         TextAt(kLeft + 4.0, high - 2.0, "font-size=\"9\" fill=\"#7a1f5c\"",
-                fmt::format(
-                    "{}, {:g}{}", level.name, level.low_lx,
-                    level.high_lx > level.low_lx ? fmt::format(" to {:g}", level.high_lx) : ""));
+         SvgText({kLeft + 4.0, high - 2.0}, "font-size=\"9\" fill=\"#7a1f5c\"",
+                 fmt::format(
+                     "{}, {:g}{}", level.name, level.low_lx,
+                     level.high_lx > level.low_lx ? fmt::format(" to {:g}", level.high_lx) : ""));
 }
 
 std::string PanelText(const DayPanel& panel, const std::vector<PlottedMoment>& moments,
@@ -219,12 +206,12 @@ std::string PanelText(const DayPanel& panel, const std::vector<PlottedMoment>& m
   for (auto curve = panel.curves.rbegin(); curve != panel.curves.rend(); ++curve) {
     text += CurveText(*curve, moments, time, y);
     text +=
-        TextAt(name_x, top - 6.0,
-               fmt::format("fill=\"{}\" font-weight=\"bold\" text-anchor=\"end\"", curve->colour),
-               curve->name);
+        SvgText({name_x, top - 6.0},
+                fmt::format("fill=\"{}\" font-weight=\"bold\" text-anchor=\"end\"", curve->colour),
+                curve->name);
     name_x -= 60.0;
   }
-  return text + TextAt(kLeft, top - 6.0, "", panel.title);
+  return text + SvgText({kLeft, top - 6.0}, "", panel.title);
 }
 
 std::vector<DayPanel> Panels(const std::vector<LightLevel>& levels) {
@@ -276,18 +263,20 @@ std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
       "Sans',sans-serif\" "
       "fill=\"#222\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
       kWidth, kPlotHeight);
-  text += TextAt(kLeft, 22.0, "font-size=\"15\" font-weight=\"bold\"",
-                 fmt::format("{} to {}", time.Local(moments.front().instant),
-                             time.Local(moments.back().instant)));
+  text += SvgText({kLeft, 22.0}, "font-size=\"15\" font-weight=\"bold\"",
+                  fmt::format("{} to {}", time.Local(moments.front().instant),
+                              time.Local(moments.back().instant)));
   double top = kTop;
   for (const DayPanel& panel : Panels(levels)) {
     text += PanelText(panel, moments, time, top);
     top += kPanelHeight + kPlotGap;
   }
   for (const auto& [instant, name] : time.Ticks())
-    text += TextAt(time.X(instant), kPlotHeight - kBottom + 16.0, "text-anchor=\"middle\"", name);
+    text +=
+        SvgText({time.X(instant), kPlotHeight - kBottom + 16.0}, "text-anchor=\"middle\"", name);
   return text +
-         TextAt(kWidth - kRight, kPlotHeight - 8.0, "text-anchor=\"end\"", zone.value_or("UTC")) +
+         SvgText({kWidth - kRight, kPlotHeight - 8.0}, "text-anchor=\"end\"",
+                 zone.value_or("UTC")) +
          "</svg>\n";
 }
 
