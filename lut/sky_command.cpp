@@ -234,7 +234,7 @@ void AddOutput(CLI::App& sky, SkyOptions& options) {
                  "sRGB in cd/m^2), polarisation (degree 0 to 1 and angle in degrees clockwise from "
                  "the vertical, for luminance)")
       ->delimiter(',')
-      ->check(CLI::IsMember({"stokes_q", "stokes_u", "polarisation"}));
+      ->check(CLI::IsMember(StokesLayerNames()));
   for (const char* name : {"--white-balance", "--tone-map", "--look", "--night-vision"})
     sky.get_option(name)->needs(png);
 }

@@ -174,12 +174,12 @@ void AddFormats(CLI::App& build, BuildOptions& options) {
   build
       .add_option("--type", options.type,
                   "Type of texels: float or half (default: float; half for takram)")
-      ->check(CLI::IsMember({"float", "half"}));
+      ->check(CLI::IsMember(TexelTypeNames()));
   build
       .add_option("--format", options.format,
                   "File format: exr, bin (for half and takram) or dat (for float and bruneton) "
                   "(default: exr; dat for bruneton)")
-      ->check(CLI::IsMember({"exr", "bin", "dat"}));
+      ->check(CLI::IsMember(TexelFormatNames()));
   build
       .add_option(
           "--lowest-sun", options.lowest_sun_deg,

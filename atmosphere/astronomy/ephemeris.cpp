@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "atmosphere/astronomy/ephemeris_tables.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/csv.h"
 #include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {

@@ -12,7 +12,7 @@
 #include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/angles.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"

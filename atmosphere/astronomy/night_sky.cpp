@@ -8,8 +8,8 @@
 #include <glm/matrix.hpp>
 
 #include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {

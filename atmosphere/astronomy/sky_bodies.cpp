@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 

@@ -13,7 +13,7 @@
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/refraction/refraction.h"

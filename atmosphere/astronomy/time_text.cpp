@@ -13,6 +13,7 @@
 #include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/base/csv.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <optional>
 
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/embedded_text.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -99,6 +103,28 @@ char SeparatorOf(std::string_view header) {
     if (SplitCsv(header, syntax).fields.size() > 1) return separator;
   }
   return ',';
+}
+
+std::vector<std::vector<double>> ReadColumns(std::string_view file,
+                                             const std::vector<int>& columns) {
+  std::vector<std::vector<double>> values(columns.size());
+  VisitCsvRows(EmbeddedText(file), [&](const CsvRecord& row) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::string_view field = row.fields.at(static_cast<std::size_t>(columns[i]));
+      const std::optional<double> number = ParseNumber(field);
+      if (!number) throw InternalError(fmt::format("{}: \"{}\" is not a number", file, field));
+      values[i].push_back(*number);
+    }
+  });
+  return values;
+}
+
+std::vector<std::string> ReadTextColumn(std::string_view file, int column) {
+  std::vector<std::string> values;
+  VisitCsvRows(EmbeddedText(file), [&](const CsvRecord& row) {
+    values.emplace_back(row.fields.at(static_cast<std::size_t>(column)));
+  });
+  return values;
 }
 
 }  // namespace alpenglow::atmosphere

@@ -2,6 +2,8 @@
 // Records of CSV text (RFC 4180): fields may stand in quotes, in which the separator has no meaning
 // and two quotes are one. Unlike there, a record ends with its line, and blanks around a field are
 // removed, within quotes too: fields are numbers and names.
+//
+// Embedded tables are read here; csv_reader.h reads files.
 #pragma once
 
 #include <algorithm>
@@ -50,5 +52,15 @@ void VisitCsvRows(std::string_view text, const Visit& visit) {
     visit(record);
   }
 }
+
+/// Returns the requested columns of an embedded table: lines that start with '#', a line of names,
+/// then numbers. One list per column, in the order requested. Throws InternalError for a field that
+/// is not a number.
+/// @param file  as for EmbeddedText.
+[[nodiscard]] std::vector<std::vector<double>> ReadColumns(std::string_view file,
+                                                           const std::vector<int>& columns);
+
+/// Returns one column of an embedded table as text.
+[[nodiscard]] std::vector<std::string> ReadTextColumn(std::string_view file, int column);
 
 }  // namespace alpenglow::atmosphere

@@ -26,7 +26,8 @@
 #include <variant>
 #include <vector>
 
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
+#include "atmosphere/base/toml_table.h"
 
 namespace alpenglow::atmosphere {
 

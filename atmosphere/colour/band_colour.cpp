@@ -21,8 +21,8 @@
 #include <cmath>
 #include <utility>
 
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"

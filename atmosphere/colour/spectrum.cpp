@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 #include "atmosphere/colour/band_colour.h"
 #include "atmosphere/math/constants.h"
 

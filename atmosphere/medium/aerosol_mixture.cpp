@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/phase_table.h"
 

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
+#include "atmosphere/base/text_file.h"
+#include "atmosphere/base/toml_table.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/aerosol_mixture.h"

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/names.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -190,6 +191,8 @@ MediumRows OzoneRows() {
 }
 
 }  // namespace
+
+std::string NameOf(RefractionBy refraction) { return kRefractions.Of(refraction); }
 
 const TomlFields<Medium>& TopFieldsOfMedium() {
   static const TomlFields<Medium> top{"", TopRows()};

@@ -17,8 +17,9 @@
 #include <system_error>
 #include <vector>
 
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/aerosol_mixture.h"

@@ -8,16 +8,17 @@
 #include <string_view>
 #include <utility>
 
-#include "atmosphere/base/csv.h"
+#include "atmosphere/base/csv_reader.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/file_format.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/text_file.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 
 namespace alpenglow::atmosphere {
 namespace {
 
+constexpr double kGreatestPhase_per_sr = 1e12;
 constexpr double kLastNode = static_cast<double>(PhaseTable::kNodes - 1);
 
 double AngleAt(double position) {
@@ -58,7 +59,7 @@ void RequireSamples(const std::vector<double>& angle_deg, const std::vector<doub
       throw InputError(fmt::format("phase: {} degrees after {}; angles must strictly ascend",
                                    angle_deg[i], angle_deg[i - 1]));
     }
-    if (!(per_sr[i] > 0.0 && per_sr[i] <= 1e12)) {
+    if (!(per_sr[i] > 0.0 && per_sr[i] <= kGreatestPhase_per_sr)) {
       throw InputError(fmt::format("phase: {} per sr at {} degrees; it must lie in (0, 1e12]",
                                    per_sr[i], angle_deg[i]));
     }
@@ -97,102 +98,49 @@ std::array<double, PhaseTable::kNodes> CurveAtNodes(const std::vector<double>& x
   return curve;
 }
 
+enum Column : std::size_t { kWavelength, kAngle, kValue };
 constexpr std::array<std::string_view, 3> kColumns{"wavelength_nm", "angle_deg", "phase_per_sr"};
+constexpr double kShortestWavelength_nm = 1.0, kLongestWavelength_nm = 1e6;
 
-class PhaseFileReader {
- public:
-  explicit PhaseFileReader(const std::filesystem::path& file)
-      : name_(file.string()), text_(ReadTextFile(file)) {}
+using PhaseSamples = std::map<double, std::map<double, double>>;  // by wavelength and angle
 
-  SpectralPhase Read() {
-    if (const auto format = FormatOf(text_, text_.size()))
-      RefuseFormat(name_, *format, "phase functions are read as CSV");
-    std::string_view rest = WithoutByteOrderMark(text_);
-    while (!rest.empty()) {
-      const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
-      const bool is_pair = rest.substr(end, 2) == "\r\n";
-      ++line_;
-      ReadLine(rest.substr(0, end));
-      rest.remove_prefix(std::min(end + (is_pair ? 2 : 1), rest.size()));
-    }
-    return Collected();
+PhaseSamples SamplesOf(CsvReader& lines) {
+  PhaseSamples samples;
+  while (lines.Next()) {
+    const double wavelength_nm =
+        lines.Number(kWavelength, kShortestWavelength_nm, kLongestWavelength_nm);
+    const double angle_deg = lines.Number(kAngle, 0.0, 180.0);
+    const double value = lines.Number(kValue, 0.0, kGreatestPhase_per_sr);
+    if (!samples[wavelength_nm].emplace(angle_deg, value).second)
+      lines.Fail(lines.line(), fmt::format("{} nm has {} degrees twice", wavelength_nm, angle_deg));
   }
+  return samples;
+}
 
- private:
-  [[noreturn]] void Fail(const std::string& fault) const {
-    throw InputError(fmt::format("{}:{}: {}", name_, line_, fault));
-  }
-
-  void ReadLine(std::string_view line) {
-    if (order_.empty()) syntax_.separator = SeparatorOf(line);
-    const CsvRecord record = SplitCsv(line, syntax_);
-    if (!record.fault.empty()) Fail(record.fault);
-    const std::vector<std::string_view>& fields = record.fields;
-    if (fields.size() == 1 && fields.front().empty()) return;
-    if (fields.size() != kColumns.size()) {
-      Fail(fmt::format("{} fields; there must be {}: {}", fields.size(), kColumns.size(),
-                       fmt::join(kColumns, ", ")));
+/// @param name  of the file, in messages.
+SpectralPhase SpectralPhaseOf(const PhaseSamples& samples, const std::string& name) {
+  SpectralPhase phase;
+  for (const auto& [angle, value] : samples.begin()->second) phase.angle_deg.push_back(angle);
+  for (const auto& [wavelength, row] : samples) {
+    phase.wavelength_nm.push_back(wavelength);
+    std::vector<double> angles;
+    phase.per_sr.emplace_back();
+    for (const auto& [angle, value] : row) {
+      angles.push_back(angle);
+      phase.per_sr.back().push_back(value);
     }
-    if (order_.empty()) {
-      ReadNames(fields);
-    } else {
-      ReadNumbers(fields);
+    if (angles != phase.angle_deg) {
+      throw InputError(fmt::format("{}: {} nm has other angles than {} nm; they must be the same",
+                                   name, wavelength, phase.wavelength_nm.front()));
+    }
+    try {
+      static_cast<void>(PhaseTable(angles, phase.per_sr.back()));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: at {} nm, {}", name, wavelength, error.what()));
     }
   }
-
-  void ReadNames(const std::vector<std::string_view>& fields) {
-    for (const std::string_view column : kColumns) {
-      const auto at = std::find(fields.begin(), fields.end(), column);
-      if (at == fields.end()) Fail(fmt::format("column {} is missing", column));
-      order_.push_back(static_cast<std::size_t>(at - fields.begin()));
-    }
-  }
-
-  void ReadNumbers(const std::vector<std::string_view>& fields) {
-    std::array<double, kColumns.size()> number{};
-    for (std::size_t i = 0; i < number.size(); ++i) {
-      const std::string_view field = fields[order_[i]];
-      const std::optional<double> parsed = ParseNumber(field);
-      if (!parsed || !std::isfinite(*parsed))
-        Fail(fmt::format("{} is \"{}\"; it must be a number", kColumns[i], field));
-      number[i] = *parsed;
-    }
-    if (!samples_[number[0]].emplace(number[1], number[2]).second) {
-      Fail(fmt::format("{} nm has {} degrees twice", number[0], number[1]));
-    }
-  }
-
-  [[nodiscard]] SpectralPhase Collected() const {
-    if (samples_.empty()) throw InputError(name_ + ": no values");
-    SpectralPhase phase;
-    for (const auto& [angle, value] : samples_.begin()->second) phase.angle_deg.push_back(angle);
-    for (const auto& [wavelength, row] : samples_) {
-      phase.wavelength_nm.push_back(wavelength);
-      std::vector<double> angles;
-      phase.per_sr.emplace_back();
-      for (const auto& [angle, value] : row) {
-        angles.push_back(angle);
-        phase.per_sr.back().push_back(value);
-      }
-      if (angles != phase.angle_deg) {
-        throw InputError(fmt::format("{}: {} nm has other angles than {} nm; they must be the same",
-                                     name_, wavelength, phase.wavelength_nm.front()));
-      }
-      try {
-        static_cast<void>(PhaseTable(angles, phase.per_sr.back()));
-      } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: at {} nm, {}", name_, wavelength, error.what()));
-      }
-    }
-    return phase;
-  }
-
-  std::string name_, text_;
-  int line_ = 0;
-  CsvSyntax syntax_{.has_comments = true};
-  std::vector<std::size_t> order_;                      // position of each of kColumns in the file
-  std::map<double, std::map<double, double>> samples_;  // value by wavelength and angle
-};
+  return phase;
+}
 
 }  // namespace
 
@@ -285,7 +233,11 @@ PhaseTable SpectralPhase::At(double wavelength) const {
 }
 
 SpectralPhase ReadSpectralPhase(const std::filesystem::path& file) {
-  return PhaseFileReader(file).Read();
+  const std::string text = ReadTextFile(file);
+  if (const auto format = FormatOf(text, text.size()))
+    RefuseFormat(file, *format, "phase functions are read as CSV");
+  CsvReader lines(text, file, kColumns, {.needed = kColumns.size(), .comments = true});
+  return SpectralPhaseOf(SamplesOf(lines), file.string());
 }
 
 }  // namespace alpenglow::atmosphere

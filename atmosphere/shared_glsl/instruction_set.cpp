@@ -9,9 +9,23 @@
 #include <string>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/names.h"
 
 namespace alpenglow::atmosphere {
 namespace {
+
+#if defined(__SSE2__)
+constexpr char kBaselineName[] = "sse2";
+#elif defined(__ARM_NEON)
+constexpr char kBaselineName[] = "neon";
+#else
+constexpr char kBaselineName[] = "baseline";
+#endif
+
+constexpr EnumNames kNames{{std::pair{InstructionSet::kScalar, "scalar"},
+                            {InstructionSet::kBaseline, kBaselineName},
+                            {InstructionSet::kAvx2, "avx2"},
+                            {InstructionSet::kAvx512, "avx512"}}};
 
 std::vector<InstructionSet> FindAvailable() {
   std::vector<InstructionSet> sets{InstructionSet::kScalar, InstructionSet::kBaseline};
@@ -60,25 +74,7 @@ std::atomic<InstructionSet>& Current() {
 
 }  // namespace
 
-std::string_view NameOf(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::kAvx512:
-      return "avx512";
-    case InstructionSet::kAvx2:
-      return "avx2";
-    case InstructionSet::kScalar:
-      return "scalar";
-    case InstructionSet::kBaseline:
-      break;
-  }
-#if defined(__SSE2__)
-  return "sse2";
-#elif defined(__ARM_NEON)
-  return "neon";
-#else
-  return "baseline";
-#endif
-}
+std::string_view NameOf(InstructionSet set) { return kNames.Of(set); }
 
 const std::vector<InstructionSet>& AvailableInstructionSets() {
   static const std::vector<InstructionSet> sets = FindAvailable();

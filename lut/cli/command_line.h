@@ -78,7 +78,7 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
                "Suppress progress and the summary, but not warnings, on standard error");
   app.add_option("--progress", options.progress,
                  "Form of progress on standard error: auto, plain, json or quiet")
-      ->check(CLI::IsMember({"auto", "plain", "json", "quiet"}))
+      ->check(CLI::IsMember(ProgressStyleNames()))
       ->capture_default_str();
   app.set_version_flag(
       "--version", [program] { return VersionText(program); }, "Print the version and exit");

@@ -22,7 +22,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "lut/cli/terminal.h"
 #include "lut/layer.h"
 
@@ -42,6 +42,11 @@ std::string JsonString(std::string_view text) {
 }
 
 namespace {
+
+constexpr EnumNames kProgressStyles{{std::pair{ProgressStyle::kAuto, "auto"},
+                                     {ProgressStyle::kPlain, "plain"},
+                                     {ProgressStyle::kJson, "json"},
+                                     {ProgressStyle::kQuiet, "quiet"}}};
 
 // First error number of standard output, 0 for none.
 std::atomic<int> output_fault{0};
@@ -165,12 +170,10 @@ std::string DurationText(double seconds) {
 }
 
 ProgressStyle ProgressStyleFromName(const std::string& name) {
-  constexpr EnumNames kNames{{std::pair{ProgressStyle::kAuto, "auto"},
-                              {ProgressStyle::kPlain, "plain"},
-                              {ProgressStyle::kJson, "json"},
-                              {ProgressStyle::kQuiet, "quiet"}}};
-  return kNames.Named(name, "--progress is \"{0}\"; it must be {2}");
+  return kProgressStyles.Named(name, "--progress is \"{0}\"; it must be {2}");
 }
+
+std::vector<std::string> ProgressStyleNames() { return kProgressStyles.All(); }
 
 struct Progress::State {
   std::string label;

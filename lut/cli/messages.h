@@ -52,6 +52,7 @@ enum class ProgressStyle { kAuto, kPlain, kJson, kQuiet };
 
 /// Reads "auto", "plain", "json" or "quiet"; throws InputError for another name.
 [[nodiscard]] ProgressStyle ProgressStyleFromName(const std::string& name);
+[[nodiscard]] std::vector<std::string> ProgressStyleNames();
 
 /// Progress on standard error: on a terminal a bar with the remaining time, elsewhere one line per
 /// 5 %, or on request JSON lines

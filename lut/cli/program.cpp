@@ -22,7 +22,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/shared_glsl/instruction_set.h"
 #include "lut/cli/command_words.h"
 #include "lut/cli/messages.h"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/reference/path_tracer.h"

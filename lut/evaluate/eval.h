@@ -51,9 +51,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "atmosphere/base/csv_reader.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
-#include "lut/cli/csv_reader.h"
 #include "lut/cli/messages.h"
 #include "lut/layer.h"
 #include "lut/table_io/table_folder.h"

@@ -18,8 +18,8 @@
 #include <optional>
 #include <string>
 
+#include "atmosphere/base/csv_reader.h"
 #include "atmosphere/lamp/airlight.h"
-#include "lut/cli/csv_reader.h"
 #include "lut/evaluate/eval.h"
 #include "lut/evaluate/integral_evaluator.h"
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 #include "lut/layer.h"
 
@@ -61,6 +61,8 @@ std::string NameOf(StokesLayer layer) { return kStokesNames.Of(layer); }
 StokesLayer StokesLayerFromName(const std::string& name) {
   return kStokesNames.Named(name, "layer \"{}\" is not one of {}");
 }
+
+std::vector<std::string> StokesLayerNames() { return kStokesNames.All(); }
 
 std::vector<std::string> ChannelsOf(StokesLayer layer) {
   const std::string name = NameOf(layer);

@@ -85,6 +85,7 @@ enum class StokesLayer {
 /// for another name.
 [[nodiscard]] std::string NameOf(StokesLayer layer);
 [[nodiscard]] StokesLayer StokesLayerFromName(const std::string& name);
+[[nodiscard]] std::vector<std::string> StokesLayerNames();
 /// Returns the names of the layer's channels in the EXR file.
 [[nodiscard]] std::vector<std::string> ChannelsOf(StokesLayer layer);
 

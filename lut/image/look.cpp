@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "lut/image/metering.h"
 #include "lut/image/night_vision.h"
 #include "lut/image/tone_mapping.h"

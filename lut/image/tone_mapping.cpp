@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "lut/image/metering.h"
 #include "lut/layer.h"
 

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/colour/spectrum.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
@@ -18,6 +19,10 @@ namespace alpenglow::lut {
 namespace {
 
 using Triple = std::array<double, 3>;
+
+constexpr EnumNames kNamedKinds{{std::pair{WhiteBalance::Kind::kCamera, "camera"},
+                                 {WhiteBalance::Kind::kDaylight, "daylight"},
+                                 {WhiteBalance::Kind::kAuto, "auto"}}};
 
 // Matrix of CAT16 and its inverse. Li et al. (2017), table of CAT16.
 constexpr Matrix3 kConesFromXyz{{{0.401288, 0.650173, -0.051461},
@@ -70,26 +75,24 @@ bool WhiteBalance::IsDaylight() const {
   return kind == Kind::kDaylight || (kelvin && *kelvin == kDaylight_k);
 }
 
+std::vector<std::string> WhiteBalanceNames() { return kNamedKinds.All(); }
+
 WhiteBalance WhiteBalanceFromText(const std::string& text) {
-  if (text == "camera") return {WhiteBalance::Kind::kCamera};
-  if (text == "daylight") return {};
-  if (text == "auto") return {WhiteBalance::Kind::kAuto};
+  if (const auto kind = kNamedKinds.Find(text)) return {*kind};
   double kelvin = 0.0;
   const char* end_of_text = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), end_of_text, kelvin);
   const bool is_whole = end == end_of_text || (*end == 'K' && end + 1 == end_of_text);
   if (error != std::errc() || !is_whole)
-    throw InputError(fmt::format(
-        "white balance is \"{}\"; it must be camera, daylight, auto or kelvins, as 5600", text));
+    throw InputError(fmt::format("white balance is \"{}\"; it must be {} or kelvins, as 5600", text,
+                                 fmt::join(kNamedKinds.All(), ", ")));
   RequireInRange(kelvin, kWarmestWhite_k, kCoolestWhite_k, "white balance");
   return {WhiteBalance::Kind::kKelvin, kelvin};
 }
 
 std::string NameOf(const WhiteBalance& white) {
   if (white.kind == WhiteBalance::Kind::kDaylight) return "daylight (D65)";
-  const std::string of_picture = white.kind == WhiteBalance::Kind::kAuto ? "auto"
-                                 : white.IsOfPicture()                   ? "camera"
-                                                                         : "";
+  const std::string of_picture = white.IsOfPicture() ? kNamedKinds.Of(white.kind) : "";
   if (!white.kelvin) return of_picture;
   return fmt::format("{}{}{:.0f} K, CAT16", of_picture, of_picture.empty() ? "" : ", ",
                      *white.kelvin);

@@ -20,6 +20,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "atmosphere/colour/spectrum.h"
 #include "lut/image/image.h"
@@ -50,6 +51,8 @@ inline constexpr double kCoolestWhite_k = 25000.0;
 /// Parses "camera", "daylight", "auto" or kelvins, as 5600 or 5600K; throws InputError for another
 /// text.
 [[nodiscard]] WhiteBalance WhiteBalanceFromText(const std::string& text);
+/// Returns the names that WhiteBalanceFromText parses, without kelvins.
+[[nodiscard]] std::vector<std::string> WhiteBalanceNames();
 /// Returns a name: "daylight (D65)", "auto", "auto, 4310 K, CAT16", "camera, 6504 K, CAT16", "5600
 /// K, CAT16".
 [[nodiscard]] std::string NameOf(const WhiteBalance& white);

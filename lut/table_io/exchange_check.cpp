@@ -32,7 +32,7 @@ constexpr std::size_t kCheckedTexels = 600;  // per scattering texture
 std::optional<TexelFormat> FormatOfFolder(const fs::path& folder) {
   for (const TexelFormat format : {TexelFormat::kExr, TexelFormat::kBin, TexelFormat::kDat}) {
     std::error_code error;
-    if (fs::exists(folder / (std::string("scattering") + SuffixOf(format)), error)) return format;
+    if (fs::exists(folder / ("scattering" + SuffixOf(format)), error)) return format;
   }
   return std::nullopt;
 }
@@ -438,9 +438,8 @@ std::string DescriptionText(const fs::path& folder, const ExchangeDescription& d
       "  atmosphere  {}, hash {:016x}{}\n"
       "  units       W m^-2 nm^-1; scattering per steradian, without phase functions\n",
       folder.string(), takram ? "takram (three-atmosphere)" : "bruneton (his demo)",
-      options.type == TexelType::kHalf ? "half" : "float",
-      std::string(SuffixOf(*options.format)).substr(1), *options.lowest_sun_deg,
-      LowestSunOf(options), medium.name, MediumHash(medium),
+      options.type == TexelType::kHalf ? "half" : "float", SuffixOf(*options.format).substr(1),
+      *options.lowest_sun_deg, LowestSunOf(options), medium.name, MediumHash(medium),
       description.medium_is_assumed ? fmt::format(" (assumed: no {} beside them)", kMediumFileName)
                                     : "");
   if (!IsTheMediumThatLoadersAssume(medium)) {

@@ -14,7 +14,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/finite.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
@@ -28,6 +28,11 @@ namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr EnumNames kTexelTypes{
+    {std::pair{TexelType::kFloat, "float"}, {TexelType::kHalf, "half"}}};
+constexpr EnumNames kTexelFormats{
+    {std::pair{TexelFormat::kExr, "exr"}, {TexelFormat::kBin, "bin"}, {TexelFormat::kDat, "dat"}}};
 
 constexpr TransmittanceTableSize kTransmittanceSize{.mu = kTransmittanceShape.width,
                                                     .altitudes = kTransmittanceShape.height};
@@ -234,16 +239,16 @@ double PhaseOverThatOfLoaders(const Medium& medium, std::size_t band, double nu)
 }
 
 TexelType TexelTypeFromName(std::string_view name) {
-  constexpr EnumNames kNames{{std::pair{TexelType::kFloat, "float"}, {TexelType::kHalf, "half"}}};
-  return kNames.Named(name, "type is \"{0}\"; it must be {2}");
+  return kTexelTypes.Named(name, "type is \"{0}\"; it must be {2}");
 }
 
+std::vector<std::string> TexelTypeNames() { return kTexelTypes.All(); }
+
 TexelFormat TexelFormatFromName(std::string_view name) {
-  constexpr EnumNames kNames{{std::pair{TexelFormat::kExr, "exr"},
-                              {TexelFormat::kBin, "bin"},
-                              {TexelFormat::kDat, "dat"}}};
-  return kNames.Named(name, "format is \"{0}\"; it must be {2}");
+  return kTexelFormats.Named(name, "format is \"{0}\"; it must be {2}");
 }
+
+std::vector<std::string> TexelFormatNames() { return kTexelFormats.All(); }
 
 std::optional<std::string> FaultOf(const ExchangeOptions& options) {
   const TexelFormat format = FormatOf(options);
@@ -293,17 +298,7 @@ std::vector<TextureShape> ShapesOf(ExchangeLayout layout) {
   return shapes;
 }
 
-const char* SuffixOf(TexelFormat format) {
-  switch (format) {
-    case TexelFormat::kExr:
-      return ".exr";
-    case TexelFormat::kBin:
-      return ".bin";
-    case TexelFormat::kDat:
-      return ".dat";
-  }
-  throw InternalError("an unknown format");
-}
+std::string SuffixOf(TexelFormat format) { return std::string(".") + kTexelFormats.Of(format); }
 
 MultipleScattering FourOrdersOf(const Medium& medium) {
   return MultipleScattering(medium, kFourOrders);

@@ -52,7 +52,9 @@ enum class TexelFormat { kExr, kBin, kDat };
 
 /// Parse "float" or "half", and "exr", "bin" or "dat". Throw InputError for other names.
 [[nodiscard]] TexelType TexelTypeFromName(std::string_view name);
+[[nodiscard]] std::vector<std::string> TexelTypeNames();
 [[nodiscard]] TexelFormat TexelFormatFromName(std::string_view name);
+[[nodiscard]] std::vector<std::string> TexelFormatNames();
 
 /// Returns the phase function of molecules of a medium over that by which loaders multiply.
 /// @param nu  cosine of the scattering angle.
@@ -100,7 +102,7 @@ inline constexpr ScatteringTableSize kExchangeScatteringSize{
 [[nodiscard]] std::vector<TextureShape> ShapesOf(ExchangeLayout layout);
 
 /// Returns ".exr", ".bin" or ".dat".
-[[nodiscard]] const char* SuffixOf(TexelFormat format);
+[[nodiscard]] std::string SuffixOf(TexelFormat format);
 
 /// Return the light scattered two to four times [1/sr], for unit solar irradiance. These are the
 /// orders that the tables contain.

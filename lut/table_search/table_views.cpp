@@ -8,6 +8,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/finite.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/reference/path_tracer.h"
@@ -113,17 +114,11 @@ double ErrorOf(const TableLookup& tables, const ReferenceView& view) {
 }  // namespace
 
 std::string_view NameOf(ViewKind kind) {
-  switch (kind) {
-    case ViewKind::kSky:
-      return "sky by day";
-    case ViewKind::kAerialPerspective:
-      return "aerial perspective";
-    case ViewKind::kTwilight:
-      return "twilight";
-    case ViewKind::kIrradiance:
-      return "irradiance of the sky";
-  }
-  throw InternalError("an unknown kind of view");
+  constexpr EnumNames kNames{{std::pair{ViewKind::kSky, "sky by day"},
+                              {ViewKind::kAerialPerspective, "aerial perspective"},
+                              {ViewKind::kTwilight, "twilight"},
+                              {ViewKind::kIrradiance, "irradiance of the sky"}}};
+  return kNames.Of(kind);
 }
 
 MultipleScattering FinestMultipleScattering(const Medium& medium) {

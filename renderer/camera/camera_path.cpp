@@ -8,10 +8,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/base/csv_reader.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
-#include "lut/cli/csv_reader.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {

@@ -11,7 +11,7 @@
 #include <glm/vec2.hpp>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/layer.h"
 

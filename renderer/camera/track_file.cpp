@@ -11,6 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/base/text_file.h"
 #include "renderer/camera/track_record.h"
 
 namespace alpenglow::renderer {

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "lut/cli/program.h"
 #include "renderer/layer.h"
 

@@ -14,6 +14,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/file_format.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/base/text_file.h"
 #include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {

@@ -9,6 +9,7 @@
 
 #include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/embedded_text.h"

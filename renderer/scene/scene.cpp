@@ -11,6 +11,8 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/file_format.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/base/text_file.h"
+#include "atmosphere/base/toml_table.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/scene/scene_fields.h"

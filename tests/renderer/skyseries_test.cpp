@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/text_file.h"
 #include "atmosphere/time_place/time.h"
 #include "lut/image/exr.h"
 #include "lut/image/image.h"

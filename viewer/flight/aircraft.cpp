@@ -2,10 +2,10 @@
 #include "viewer/flight/aircraft.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/angles.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/standard_air.h"
@@ -317,9 +317,11 @@ AircraftState OnGround(const AircraftState& state, const Ellipsoid& ellipsoid,
 }  // namespace
 
 const char* NameOf(GroundContact contact) {
-  constexpr std::array<const char*, 4> kNames{"", "rolling", "scraping over the ground",
-                                              "standing"};
-  return kNames[static_cast<std::size_t>(contact)];
+  constexpr EnumNames kNames{{std::pair{GroundContact::kNone, ""},
+                              {GroundContact::kRolling, "rolling"},
+                              {GroundContact::kScraping, "scraping over the ground"},
+                              {GroundContact::kStanding, "standing"}}};
+  return kNames.Of(contact);
 }
 
 double StallSpeed(const AircraftKind& kind, double height_m) {

@@ -2,12 +2,12 @@
 #include "viewer/flight/flight.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 
 namespace alpenglow::viewer {
@@ -22,8 +22,10 @@ double TurnRate(const CameraPose& eye) {
 }  // namespace
 
 const char* NameOf(FlightMode mode) {
-  constexpr std::array<const char*, 3> kNames{"free camera", "aircraft", "track"};
-  return kNames[static_cast<std::size_t>(mode)];
+  constexpr EnumNames kNames{{std::pair{FlightMode::kFree, "free camera"},
+                              {FlightMode::kAircraft, "aircraft"},
+                              {FlightMode::kTrack, "track"}}};
+  return kNames.Of(mode);
 }
 
 CameraPose Placed(const CameraPose& eye, const EyePlacement& placement) {

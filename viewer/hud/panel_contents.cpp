@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 #include "lut/image/image.h"
 #include "lut/image/look.h"
@@ -24,9 +25,9 @@ constexpr double kStripWidth = 440.0;  // units
 constexpr double kStripHeight = 64.0;  // units
 constexpr double kNightShare = 0.35;   // brightness of the day strip in the night theme
 
-const std::vector<std::string> kWhiteBalances{"camera", "daylight", "auto"};
-const std::vector<std::string> kQualities{"auto", "low", "medium", "high", "reference"};
-const std::vector<std::string> kThemes{"by exposure", "day", "night"};
+constexpr EnumNames kThemes{{std::pair{HudThemeChoice::kAuto, "by exposure"},
+                             {HudThemeChoice::kDay, "day"},
+                             {HudThemeChoice::kNight, "night"}}};
 const std::vector<std::string> kTableHeading{"", "made in", "memory"};
 
 float Pixels(const PanelView& view, double units) { return static_cast<float>(units * view.scale); }
@@ -162,7 +163,7 @@ void ShowRow(const HudRow& row) {
 }
 
 std::string WhiteBalanceOf(const Look& look) {
-  for (const std::string& name : kWhiteBalances) {
+  for (const std::string& name : WhiteBalanceNames()) {
     if (WhiteBalanceFromText(name) == look.white) return name;
   }
   return fmt::format("{:.0f} K", look.white.kelvin.value_or(kDaylight_k));
@@ -170,7 +171,7 @@ std::string WhiteBalanceOf(const Look& look) {
 
 // Draws a list of named white balances, and a slider for the colour temperature.
 void WhiteBalanceControls(const ExposureControl& exposure, Look& look) {
-  if (const auto name = NameList("white balance", WhiteBalanceOf(look), kWhiteBalances))
+  if (const auto name = NameList("white balance", WhiteBalanceOf(look), WhiteBalanceNames()))
     look.white = WhiteBalanceFromText(*name);
   if (const auto kelvin = Slider("white light", exposure.white_k().value_or(kDaylight_k),
                                  {kWarmestWhite_k, kCoolestWhite_k, "%.0f K", true}))
@@ -190,10 +191,8 @@ void LookControls(ExposureControl& exposure) {
 }
 
 void ThemeList(HudThemeChoice& theme) {
-  const std::string& current = kThemes[static_cast<std::size_t>(theme)];
-  if (const auto chosen = NameList("instruments", current, kThemes))
-    theme = static_cast<HudThemeChoice>(std::find(kThemes.begin(), kThemes.end(), *chosen) -
-                                        kThemes.begin());
+  if (const auto chosen = NameList("instruments", kThemes.Of(theme), kThemes.All()))
+    theme = *kThemes.Find(*chosen);
 }
 
 void ModeList(const HudModel& model, FlightCommands& flight) {
@@ -301,7 +300,7 @@ void DrawFlight(const PanelChange& change) {
 
 void DrawTables(const PanelChange& change) {
   ImGui::PushItemWidth(Pixels(change.view, kItemWidth));
-  if (const auto quality = NameList("quality", change.view.model.speed.quality, kQualities))
+  if (const auto quality = NameList("quality", change.view.model.speed.quality, QualityRuleTexts()))
     change.flight.Use(QualityRuleFromText(*quality));
   ImGui::PopItemWidth();
   ShowTable(change.view.model.tables);

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/names.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
@@ -18,6 +18,7 @@ constexpr EnumNames kQualities{{std::pair{Quality::kLow, "low"},
                                 {Quality::kMedium, "medium"},
                                 {Quality::kHigh, "high"},
                                 {Quality::kReference, "reference"}}};
+constexpr char kAutomatic[] = "auto";
 
 /// A rendering configuration and its approximate relative cost.
 struct Step {
@@ -63,8 +64,14 @@ double MedianOf(std::deque<double> values) {
 std::string NameOf(Quality quality) { return kQualities.Of(quality); }
 
 QualityRule QualityRuleFromText(const std::string& text) {
-  if (text == "auto") return {};
+  if (text == kAutomatic) return {};
   return {kQualities.Named(text, "--quality is \"{}\"; it is one of auto, {}")};
+}
+
+std::vector<std::string> QualityRuleTexts() {
+  std::vector<std::string> texts = kQualities.All();
+  texts.insert(texts.begin(), kAutomatic);
+  return texts;
 }
 
 PaintedQuality PaintedAlways(Quality quality) {

@@ -7,6 +7,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/media/fog_map.h"
@@ -27,8 +28,10 @@ struct QualityRule {
 
   bool operator==(const QualityRule&) const = default;
 };
-/// Parses "low", "medium", "high", "reference" or "auto". Throws InputError for another text.
+/// Parses "auto", "low", "medium", "high" or "reference". Throws InputError for another text.
 [[nodiscard]] QualityRule QualityRuleFromText(const std::string& text);
+/// Returns the texts that QualityRuleFromText parses.
+[[nodiscard]] std::vector<std::string> QualityRuleTexts();
 
 /// Features that are omitted from a picture of half the window's resolution before its resolution
 /// is reduced further. Each value includes the values before it.

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/text_file.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <map>
 
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase.h"

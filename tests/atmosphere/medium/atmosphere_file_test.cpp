@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/text_file.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/atmosphere_file.h"

@@ -449,13 +449,16 @@ TEST_F(PhaseFile, QuotesSeparatorsAndLineEndsOfOtherProgramsAreRead) {
 TEST_F(PhaseFile, FaultsAreNamedWithFileAndLine) {
   const std::string text = Text();
   const std::pair<std::string, const char*> texts[] = {
-      {"wavelength_nm,angle_deg\n", "p.csv:1: 2 fields"},
-      {"wavelength_nm,angle_deg,p\n", "p.csv:1: column phase_per_sr is missing"},
+      {"wavelength_nm,angle_deg\n", "p.csv:1: column phase_per_sr is missing"},
+      {"wavelength_nm,angle_deg,p\n", "p.csv:1: column \"p\" is unknown"},
+      {text + "0,400\n", "has 2 fields; it must have 3"},
       {text + "a,400,1\n", "angle_deg is \"a\"; it must be a number"},
       {text + "0,400,1\n", "400 nm has 0 degrees twice"},
       {text + "0.05,400,1\n", "600 nm has other angles than 400 nm"},
       {text + "0.05,500,1\n", "p.csv: "},
-      {"", "p.csv: no values"}};
+      {text + "0,400,nan\n", "phase_per_sr is nan; it must lie in"},
+      {"wavelength_nm,angle_deg,phase_per_sr\n", "p.csv: has no lines below its header"},
+      {"", "p.csv: is empty"}};
   for (const auto& [file, message] : texts)
     EXPECT_THAT(FaultOfText(file), HasSubstr(message)) << message;
 }

@@ -437,10 +437,10 @@ void ExpectRefused(const fs::path& folder, const std::string& reason) {
 TEST_F(TakramSet, IsDescribedAndHeldAgainstTexelsOfOurOwn) {
   constexpr std::array kFormats{TexelFormat::kBin, TexelFormat::kExr};
   for (const TexelFormat format : std::span(kFormats).first(tests::ScaledDown<std::size_t>(2, 1))) {
-    const fs::path folder = folder_ / std::string(SuffixOf(format)).substr(1);
+    const fs::path folder = folder_ / SuffixOf(format).substr(1);
     WriteExchangeTables(TakramTextures(), air_, {.format = format}, folder);
     EXPECT_EQ(ExchangeFolderOf(folder), folder);
-    EXPECT_EQ(ExchangeFolderOf(folder / (std::string("irradiance") + SuffixOf(format))), folder);
+    EXPECT_EQ(ExchangeFolderOf(folder / ("irradiance" + SuffixOf(format))), folder);
     const ExchangeDescription description = DescribeExchangeTables(folder);
     EXPECT_EQ(description.options.layout, ExchangeLayout::kTakram);
     EXPECT_EQ(description.options.lowest_sun_deg, 120.0);

@@ -13,7 +13,7 @@
 
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/text_file.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "lut/image/look.h"

@@ -1,21 +1,35 @@
 // SPDX-License-Identifier: MIT
-#include "lut/cli/csv_reader.h"
+#include "atmosphere/base/csv_reader.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <optional>
+#include <sstream>
+#include <utility>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/file_format.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/layer.h"
 
-namespace alpenglow::lut {
+namespace alpenglow::atmosphere {
 namespace {
 
 // Longer lines are rejected: in a binary file, for example, the first line could be the whole file.
 constexpr std::size_t kLongestLine = 4096;
+
+std::unique_ptr<std::istream> OpenedFile(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw InputError(
+        fmt::format("{}: {}", file.string(), error ? error.message() : "is not a regular file"));
+  }
+  RefuseKnownFormats(file, "CSV is read");
+  auto stream = std::make_unique<std::ifstream>(file, std::ios::binary);
+  if (!*stream) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  return stream;
+}
 
 }  // namespace
 
@@ -32,19 +46,23 @@ bool HeaderNames(const std::filesystem::path& file, std::string_view column) {
 
 CsvReader::CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns,
                      const Rules& rules)
-    : file_(file),
+    : CsvReader(OpenedFile(file), file, columns, rules) {
+  bytes_ = std::filesystem::file_size(file);
+}
+
+CsvReader::CsvReader(const std::string& text, const std::filesystem::path& origin,
+                     std::span<const std::string_view> columns, const Rules& rules)
+    : CsvReader(std::make_unique<std::istringstream>(text), origin, columns, rules) {
+  bytes_ = text.size();
+}
+
+CsvReader::CsvReader(std::unique_ptr<std::istream> stream, const std::filesystem::path& origin,
+                     std::span<const std::string_view> columns, const Rules& rules)
+    : file_(origin),
       columns_(columns.begin(), columns.end()),
+      stream_(std::move(stream)),
       rules_(rules),
       syntax_{.has_comments = rules.comments} {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    throw InputError(
-        fmt::format("{}: {}", file.string(), error ? error.message() : "is not a regular file"));
-  }
-  RefuseKnownFormats(file, "CSV is read");
-  bytes_ = std::filesystem::file_size(file);
-  stream_.open(file, std::ios::binary);
-  if (!stream_) throw InputError(fmt::format("{}: cannot be read", file.string()));
   ReadHeader();
 }
 
@@ -54,9 +72,9 @@ void CsvReader::Fail(std::size_t line, const std::string& fault) const {
 
 bool CsvReader::ReadLine() {
   line_.clear();
-  using Traits = std::ifstream::traits_type;
+  using Traits = std::istream::traits_type;
   bool any = false, ended = false;
-  std::streambuf* buffer = stream_.rdbuf();
+  std::streambuf* buffer = stream_->rdbuf();
   auto c = buffer->sbumpc();
   for (; !Traits::eq_int_type(c, Traits::eof()); c = buffer->sbumpc()) {
     any = true;
@@ -146,4 +164,4 @@ double CsvReader::Number(std::size_t column, double low, double high) const {
   return value;
 }
 
-}  // namespace alpenglow::lut
+}  // namespace alpenglow::atmosphere

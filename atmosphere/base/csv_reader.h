@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Reader of CSV files with a header and lines of numbers and names (atmosphere/base/csv.h): columns
-// in any order, separated by commas, semicolons or tabs. Lines end with CR, LF or both and are read
-// one at a time: a file of a million lines needs the memory of one line.
+// Reader of CSV with a header and lines of numbers and names (atmosphere/base/csv.h): columns in
+// any order, separated by commas, semicolons or tabs. Lines end with CR, LF or both and are read one
+// at a time: a file of a million lines needs the memory of one line.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <istream>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@
 
 #include "atmosphere/base/csv.h"
 
-namespace alpenglow::lut {
+namespace alpenglow::atmosphere {
 
 /// Returns whether a file names a column in its header; the rest of the file is not checked. Throws
 /// InputError for a file that cannot be read or is empty.
@@ -37,6 +38,9 @@ class CsvReader {
   };
   CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns,
             const Rules& rules);
+  /// Reads text that is in memory; messages contain `origin` in place of the file.
+  CsvReader(const std::string& text, const std::filesystem::path& origin,
+            std::span<const std::string_view> columns, const Rules& rules);
 
   /// Returns whether the file has the column. Field and Number require that it has.
   [[nodiscard]] bool Has(std::size_t column) const { return position_[column] != columns_.size(); }
@@ -58,23 +62,25 @@ class CsvReader {
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
  private:
+  CsvReader(std::unique_ptr<std::istream> stream, const std::filesystem::path& origin,
+            std::span<const std::string_view> columns, const Rules& rules);
   [[nodiscard]] bool ReadLine();
   [[nodiscard]] bool ReadRecord();
   void ReadHeader();
 
   std::filesystem::path file_;
   std::vector<std::string_view> columns_;
-  std::ifstream stream_;
+  std::unique_ptr<std::istream> stream_;
   std::uint64_t bytes_ = 0;
   std::uint64_t bytes_read_ = 0;
   std::size_t line_number_ = 0;
   bool any_ = false;
   Rules rules_;
-  atmosphere::CsvSyntax syntax_;
+  CsvSyntax syntax_;
   std::size_t fields_in_header_ = 0;
   std::string line_;
-  atmosphere::CsvRecord record_;       // fields of line_
+  CsvRecord record_;                   // fields of line_
   std::vector<std::size_t> position_;  // of each column in the file; columns_.size(): missing
 };
 
-}  // namespace alpenglow::lut
+}  // namespace alpenglow::atmosphere

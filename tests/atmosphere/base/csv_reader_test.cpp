@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/cli/csv_reader.h"
+#include "atmosphere/base/csv_reader.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -10,11 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "lut/layer.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow::lut {
+namespace alpenglow::atmosphere {
 namespace {
 
 using testing::AllOf;
@@ -89,4 +88,4 @@ TEST_F(CsvFile, HeadersNameColumnsAlsoInQuotes) {
 }
 
 }  // namespace
-}  // namespace alpenglow::lut
+}  // namespace alpenglow::atmosphere
