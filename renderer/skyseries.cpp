@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/terminal.h"
 #include "renderer/camera/track.h"
@@ -265,7 +264,7 @@ void List(const SeriesPlan& plan, const std::string& out) {
   for (const Frame& frame : plan.selected) {
     ThrowIfInterrupted();
     FrameRecord record = plan.viewpoint.RecordOf(frame);
-    if (name) record.Set("file", name->Exr(frame.number).string());
+    if (name) record.Set("file", name->Picture(frame.number).string());
     PrintNow(ListLineOf(record));
   }
 }

@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 
-#include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 #include "lut/cli/growing_file.h"
-#include "lut/cli/output_file.h"
+#include "lut/image/picture_format.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -18,7 +16,7 @@ namespace fs = std::filesystem;
 
 /// Returns the first numbered name for which no file with any of the extensions exists.
 fs::path NextFree(const fs::path& folder, const char* stem,
-                  std::initializer_list<const char*> extensions,
+                  const std::vector<const char*>& extensions,
                   const std::vector<fs::path>& promised = {}) {
   for (int number = 1;; ++number) {
     const fs::path free = folder / fmt::format("{}-{:04d}", stem, number);
@@ -33,14 +31,10 @@ fs::path NextFree(const fs::path& folder, const char* stem,
 
 }  // namespace
 
-void RequirePictureName(const std::filesystem::path& file) {
-  if (HasExtension(file, ".png") || HasExtension(file, ".exr")) return;
-  throw OptionError(
-      fmt::format("\"{}\" is no picture's name; it must end in .png or .exr", file.string()));
-}
-
 fs::path NextScreenshot(const fs::path& folder, const std::vector<fs::path>& promised) {
-  return NextFree(folder, "skyview", {".png", ".exr"}, promised);
+  std::vector<const char*> extensions;
+  for (const PictureFormat& format : PictureFormats()) extensions.push_back(format.extension);
+  return NextFree(folder, "skyview", extensions, promised);
 }
 
 fs::path NextFlight(const fs::path& folder) {

@@ -7,11 +7,8 @@
 
 namespace alpenglow::viewer {
 
-/// Throws InputError unless the file's name ends in .png or .exr.
-void RequirePictureName(const std::filesystem::path& file);
-
-/// Returns the first of skyview-0001, skyview-0002, ... in the folder for which neither a .png nor
-/// an .exr exists, so that both files of one frame share one number.
+/// Returns the first of skyview-0001, skyview-0002, ... in the folder for which no picture of any
+/// format exists, so that the files of one frame share one number.
 /// @param promised  files that do not exist yet and will be written.
 [[nodiscard]] std::filesystem::path NextScreenshot(
     const std::filesystem::path& folder, const std::vector<std::filesystem::path>& promised = {});

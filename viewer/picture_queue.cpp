@@ -5,7 +5,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/thread_priority.h"
-#include "lut/image/png.h"
+#include "lut/image/picture_format.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/picture_writer.h"
@@ -151,7 +151,7 @@ void PictureQueue::Write(const PictureRequest& request, SecondFlight& second) {
   const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);
   const Metadata header =
       pictures.PaintStill({screen.framebuffer(), size.width, size.height}, progress);
-  WritePng(request.file, WithInstruments(screen.Read()), header);
+  FormatOfPicture(request.file).write_colours(request.file, WithInstruments(screen.Read()), header);
 }
 
 std::string PictureQueue::Make(const PictureRequest& request,

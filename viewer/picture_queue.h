@@ -31,7 +31,7 @@ namespace alpenglow::viewer {
 /// Request for a picture.
 struct PictureRequest {
   FlightMoment moment;
-  std::filesystem::path file;  // .png or .exr
+  std::filesystem::path file;  // of one of PictureFormats
   ImageSize size;
   /// Draws instruments over a developed picture; an empty function draws none. It is called from
   /// NextFrame and Finish.

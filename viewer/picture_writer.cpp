@@ -7,16 +7,13 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 #include "lut/cli/program.h"
 #include "lut/image/development.h"
-#include "lut/image/exr.h"
-#include "lut/image/png.h"
+#include "lut/image/picture_format.h"
 #include "lut/image/white_balance.h"
 #include "renderer/series/manifest.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/passes/panorama.h"
-#include "viewer/picture_name.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -112,17 +109,18 @@ Metadata PictureWriter::PaintStill(const ToneMapPass::Screen& screen,
 
 void PictureWriter::Write(const std::filesystem::path& file, const ImageSize& size,
                           const PictureProgress& progress) {
-  RequirePictureName(file);
+  const PictureFormat& format = FormatOfPicture(file);
   Image image = Picture(size, kPictureSamples, progress);
   const PaintedView view = flight_.ViewOf(size);
   const Projection projection = ProjectionOf(view);
   const Development development = flight_.exposure().DevelopmentOf(image, projection);
   const auto& [look, ev100] = development;
   const Metadata metadata = HeaderOf(view, development);
-  if (HasExtension(file, ".exr")) {
-    WriteExr(file, image, metadata, projection);
+  if (format.StoresLight()) {
+    format.write_light(file, image, metadata, projection);
   } else {
-    WritePng(file, Develop(Balanced(std::move(image), look.white), ev100, look), metadata);
+    format.write_colours(file, Develop(Balanced(std::move(image), look.white), ev100, look),
+                         metadata);
   }
 }
 

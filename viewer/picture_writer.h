@@ -22,8 +22,9 @@ class PictureWriter {
   /// is assembled from perspectives. Throws OptionError if memory is insufficient.
   [[nodiscard]] Image Picture(const ImageSize& size, int samples,
                               const PictureProgress& progress = {});
-  /// Paints the view again with several rays per pixel and writes it: a .png is developed, an .exr
-  /// is linear. Both have the settings of the picture in their headers. Throws OutputError.
+  /// Paints the view again with several rays per pixel and writes it, linear or developed by the
+  /// format of the file. The header has the settings of the picture. Throws OutputError, and
+  /// OptionError for a name that is no picture's.
   void Write(const std::filesystem::path& file, const ImageSize& size,
              const PictureProgress& progress = {});
   /// Paints the picture of a window as Write does, and develops it onto a screen.

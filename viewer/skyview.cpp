@@ -10,6 +10,7 @@
 #include "lut/cli/growing_file.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
+#include "lut/image/picture_format.h"
 #include "renderer/camera/track.h"
 #include "renderer/camera/track_file.h"
 #include "renderer/camera/track_names.h"
@@ -21,7 +22,6 @@
 #include "viewer/flight_session.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
-#include "viewer/picture_name.h"
 #include "viewer/picture_writer.h"
 #include "viewer/reports.h"
 #include "viewer/skyview_options.h"
@@ -295,7 +295,7 @@ void RequireOverLand(const CameraPath& path, const std::string& file, const Scen
 int Run(const SkyviewOptions& options) {
   const ThreadLimit threads(options.common.threads);
   const ImageSize size = SizeFromText(options.size);
-  if (options.screenshot) RequirePictureName(*options.screenshot);
+  if (options.screenshot) (void)FormatOfPicture(*options.screenshot);
   if (options.video) RequireVideo(*options.video);
   std::optional<Track> flown;  // --path, if it is a track
   if (options.replay && IsTrack(*options.replay)) flown = ReadTrackWithNote(*options.replay);

@@ -9,6 +9,7 @@
 
 #include "lut/cli/command_line.h"
 #include "lut/image/look_options.h"
+#include "lut/image/picture_format.h"
 #include "renderer/scene/scene_options.h"
 #include "viewer/input/action.h"
 #include "viewer/layer.h"
@@ -132,8 +133,9 @@ inline void AddPictureOptions(CLI::App& app, SkyviewOptions& options) {
 
 inline void AddOutputOptions(CLI::App& app, SkyviewOptions& options) {
   BeginGroup(app, kOutputGroup);
-  CLI::Option* picture = app.add_option("--screenshot", options.screenshot,
-                                        "Write this PNG or EXR after --frames frames, and exit");
+  CLI::Option* picture =
+      app.add_option("--screenshot", options.screenshot,
+                     "Write this " + NamesOfPictureFormats() + " after --frames frames, and exit");
   app.add_option("--frames", options.frames,
                  "Number of frames before the screenshot, 1 to 1000000; for a replay without a "
                  "display, number of pictures along it, including both ends")

@@ -8,12 +8,11 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
-#include "lut/image/png.h"
+#include "lut/image/picture_format.h"
 #include "lut/sky/sky_view_map.h"
 #include "renderer/scene/places.h"
 #include "viewer/gl/render_target.h"
@@ -40,8 +39,9 @@ void DrawInstruments(const RenderTarget& screen, const HudModel& model, const Hu
 }
 
 void RequireInstruments(const std::filesystem::path& file, const ImageSize& size) {
-  if (!HasExtension(file, ".png"))
-    throw InputError(fmt::format("\"{}\": only a PNG has instruments (--hud on)", file.string()));
+  if (FormatOfPicture(file).StoresLight())
+    throw InputError(fmt::format("\"{}\": only a {} has instruments (--hud on)", file.string(),
+                                 NamesOfDevelopedFormats()));
   RequireDrawable(size.width, size.height);
 }
 
@@ -223,7 +223,7 @@ void ViewerApp::Request(const PictureOrder& picture) {
   Try([&] {
     const ImageSize size = picture.size.value_or(size_);
     std::filesystem::path file = NextScreenshot(".", pictures_.Files());
-    file += picture.is_exr ? ".exr" : ".png";
+    file += picture.extension;
     RequireWritable(file);
     PictureRequest request{flight_.Moment(), file, size};
     if (picture.with_instruments) {
@@ -306,7 +306,7 @@ void ViewerApp::WritePicture(const std::filesystem::path& file, const ImageSize&
   const Metadata header =
       PictureWriter(flight_).PaintStill({screen.framebuffer(), size.width, size.height});
   DrawInstruments(screen, Model(), SettingsOf(hud_), *this);
-  WritePng(file, screen.ReadBytes(), header);
+  FormatOfPicture(file).write_colours(file, screen.ReadBytes(), header);
 }
 
 void ViewerApp::Paint(const ToneMapPass::Screen& screen, double seconds) {

@@ -165,7 +165,7 @@ Look SeriesExposure::LookOf(const Frame& frame, const Image& image, bool rendere
 }
 
 std::optional<double> SeriesExposure::KeptWhite(const Frame& frame) const {
-  const Metadata kept = ReadExrMetadata(output_.name.Exr(frame.number));
+  const Metadata kept = ReadExrMetadata(output_.name.Picture(frame.number));
   const auto rule = kept.find(kWhiteRule), kelvin = kept.find(kWhite_k);
   if (rule == kept.end() || rule->second != smooth_mired_->InWords() || kelvin == kept.end())
     return std::nullopt;
@@ -202,7 +202,7 @@ Development SeriesExposure::DevelopmentOf(const Frame& frame, const Image& image
 
 std::optional<double> SeriesExposure::KeptEv100(const Frame& frame, const Look& look,
                                                 const std::string& words) const {
-  const Metadata kept = ReadExrMetadata(output_.name.Exr(frame.number));
+  const Metadata kept = ReadExrMetadata(output_.name.Picture(frame.number));
   Metadata wanted = HeaderOfExposure(output_.exposure, 0.0, words);
   wanted.erase(kEv100Key);
   wanted.merge(HeaderOfLook(look));

@@ -81,8 +81,9 @@ double Positive(double value, const std::string& name) {
 
 }  // namespace
 
-FrameName::FrameName(const std::string& pattern) {
-  if (!HasExtension(pattern, ".exr")) Refuse(pattern, "it must end in .exr");
+FrameName::FrameName(const std::string& pattern, std::string_view extension) {
+  if (!HasExtension(pattern, extension))
+    Refuse(pattern, fmt::format("it must end in {}", extension));
   std::string* part = &before_;
   for (std::size_t i = 0; i < pattern.size(); ++i) {
     if (pattern[i] != '%') {
@@ -103,13 +104,13 @@ FrameName::FrameName(const std::string& pattern) {
   }
 }
 
-std::filesystem::path FrameName::Exr(int number) const {
+std::filesystem::path FrameName::Picture(int number) const {
   if (!has_number_) return before_;
   return before_ + fmt::format("{:0{}}", number, width_) + after_;
 }
 
 std::filesystem::path FrameName::Png(int number) const {
-  return Exr(number).replace_extension(".png");
+  return Picture(number).replace_extension(".png");
 }
 
 std::filesystem::path FrameName::Manifest() const {

@@ -22,13 +22,13 @@ namespace alpenglow::renderer {
 class FrameName {
  public:
   /// Throws OptionError for other conversions, for more than one, and for names that do not end in
-  /// .exr.
-  explicit FrameName(const std::string& pattern);
+  /// the extension.
+  explicit FrameName(const std::string& pattern, std::string_view extension = ".exr");
 
   /// Returns whether frames with different numbers have different names.
   [[nodiscard]] bool HasNumber() const { return has_number_; }
-  [[nodiscard]] std::filesystem::path Exr(int number) const;
-  /// Returns the name of Exr() with .png instead of .exr.
+  [[nodiscard]] std::filesystem::path Picture(int number) const;
+  /// Returns the name of Picture() with the extension .png.
   [[nodiscard]] std::filesystem::path Png(int number) const;
   /// Returns the name of the list of frames, in their folder: "DIR/frame.manifest.csv".
   [[nodiscard]] std::filesystem::path Manifest() const;

@@ -17,6 +17,7 @@
 #include "lut/image/development.h"
 #include "lut/image/exr.h"
 #include "lut/image/look.h"
+#include "lut/image/picture_format.h"
 #include "lut/image/png.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/contact_sheet.h"
@@ -51,9 +52,9 @@ Metadata RenderMetadata(const SeriesSource& source, const Frame& frame) {
 }
 
 /// Returns a value of a file's header, or "" if the file or the value is missing.
-std::string HeaderValue(const std::function<Metadata()>& read, const std::string& name) {
+std::string HeaderValue(const fs::path& file, const std::string& name) {
   try {
-    const Metadata metadata = read();
+    const Metadata metadata = FormatOfPicture(file).read_metadata(file);
     const auto found = metadata.find(name);
     return found == metadata.end() ? "" : found->second;
   } catch (const InputError&) {
@@ -73,10 +74,6 @@ void AddFound(const Metadata& header, FrameRecord& record) {
   record.Set("exposure", value(kExposure));
 }
 
-std::string ExrValue(const fs::path& file, const std::string& name) {
-  return HeaderValue([&] { return ReadExrMetadata(file); }, name);
-}
-
 Metadata NotesOf(const fs::path& exr) {
   Metadata notes = ReadExrMetadata(exr);
   std::erase_if(notes, [](const auto& entry) { return !entry.first.starts_with(kNotePrefix); });
@@ -86,7 +83,7 @@ Metadata NotesOf(const fs::path& exr) {
 /// Returns the picture in the file if it is intact and was made with these settings.
 std::optional<NotedPicture> KeptPicture(const fs::path& file,
                                         const std::string& render_fingerprint) {
-  if (ExrValue(file, kRenderFingerprint) != render_fingerprint) return std::nullopt;
+  if (HeaderValue(file, kRenderFingerprint) != render_fingerprint) return std::nullopt;
   try {
     NotedPicture kept(ReadExr(file), NotesOf(file));
     if (FaultyValue(kept.image)) return std::nullopt;
@@ -97,7 +94,7 @@ std::optional<NotedPicture> KeptPicture(const fs::path& file,
 }
 
 bool IsKeptPng(const fs::path& file, const std::string& fingerprint) {
-  if (HeaderValue([&] { return ReadPngMetadata(file); }, kFingerprint) != fingerprint) return false;
+  if (HeaderValue(file, kFingerprint) != fingerprint) return false;
   try {
     (void)ReadPng(file);
     return true;
@@ -132,7 +129,7 @@ class Series {
 
   /// Renders or updates a frame. @return whether it was rendered.
   bool Make(const Frame& frame, Progress& progress) {
-    const fs::path exr = output_.name.Exr(frame.number);
+    const fs::path exr = output_.name.Picture(frame.number);
     const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
     std::optional<NotedPicture> picture;
     if (output_.resume) picture = KeptPicture(exr, wanted);
@@ -222,9 +219,9 @@ class Series {
     const Image& image = picture.image;
     Metadata metadata = FrameMetadata(source_, output_, frame, RecordOfFrame(frame), development);
     metadata.insert(picture.notes.begin(), picture.notes.end());
-    const fs::path exr = output_.name.Exr(frame.number);
+    const fs::path exr = output_.name.Picture(frame.number);
     const fs::path png = output_.name.Png(frame.number);
-    const bool keep_exr = !rendered && ExrValue(exr, kFingerprint) == metadata.at(kFingerprint);
+    const bool keep_exr = !rendered && HeaderValue(exr, kFingerprint) == metadata.at(kFingerprint);
     const bool keep_png = !output_.png || (keep_exr && IsKeptPng(png, metadata.at(kFingerprint)));
     if (!keep_exr) WriteExr(exr, image, metadata);
     if (!keep_png)
@@ -241,7 +238,7 @@ class Series {
   [[nodiscard]] DisplayImage Shown(const Frame& frame) const {
     if (output_.png) return ReadPng(output_.name.Png(frame.number));
     const Development& development = developments_.at(frame.number);
-    const Image image = ReadExr(output_.name.Exr(frame.number));
+    const Image image = ReadExr(output_.name.Picture(frame.number));
     return Develop(exposure_.Seen(frame, image, development.look), development.ev100,
                    development.look);
   }
@@ -268,7 +265,7 @@ class Series {
   /// Returns what is known of a frame before it is rendered.
   [[nodiscard]] FrameRecord RecordBefore(const Frame& frame) const {
     FrameRecord record = source_.viewpoint.RecordOf(frame);
-    record.Set("file", output_.name.Exr(frame.number).filename().string());
+    record.Set("file", output_.name.Picture(frame.number).filename().string());
     if (source_.viewpoint.path)
       AddPose(frame, source_.viewpoint.path->PoseAt(frame.path_s), record);
     return record;
@@ -277,10 +274,10 @@ class Series {
   /// Adds the values of a frame that another run (or machine) has rendered, from its file.
   void AddFoundElsewhere(const Frame& frame, FrameRecord& record) const {
     std::error_code none;  // a frame that cannot be asked for is not there
-    if (!fs::exists(output_.name.Exr(frame.number), none)) return;
+    if (!fs::exists(output_.name.Picture(frame.number), none)) return;
     const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
     try {
-      const Metadata header = ReadExrMetadata(output_.name.Exr(frame.number));
+      const Metadata header = ReadExrMetadata(output_.name.Picture(frame.number));
       const auto made = header.find(kRenderFingerprint);
       if (made != header.end() && made->second == wanted) AddFound(header, record);
     } catch (const InputError&) {
@@ -329,7 +326,7 @@ std::vector<NamedFile> OutputsOf(const std::vector<Frame>& selected, const Serie
   outputs.push_back({"--out: the manifest", output.name.Manifest()});
   outputs.push_back({"--out: the manifest", output.name.JsonManifest()});
   for (const Frame& frame : selected) {
-    outputs.push_back({"--out", output.name.Exr(frame.number)});
+    outputs.push_back({"--out", output.name.Picture(frame.number)});
     if (output.png) outputs.push_back({"--png", output.name.Png(frame.number)});
   }
   return outputs;

@@ -9,6 +9,7 @@
 #include "lut/cli/growing_file.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
+#include "lut/image/picture_format.h"
 #include "renderer/series/frame_times.h"
 
 namespace alpenglow::viewer {
@@ -115,16 +116,13 @@ ReplayFrame ReplayAt(const CameraPath& path, double path_s) {
 
 std::vector<std::filesystem::path> ReplayPictures(const std::string& pattern, int count) {
   if (count == 1) return {pattern};
-  const std::filesystem::path last = pattern;
-  const bool is_png = HasExtension(last, ".png");
-  const FrameName name(is_png ? std::filesystem::path(last).replace_extension(".exr").string()
-                              : pattern);
+  const FrameName name(pattern, FormatOfPicture(pattern).extension);
   if (!name.HasNumber()) {
     throw InputError(fmt::format(
         "--screenshot has no frame number (%04d), but the replay has {} pictures", count));
   }
   std::vector<std::filesystem::path> files;
-  for (int i = 0; i < count; ++i) files.push_back(name.Exr(i).replace_extension(last.extension()));
+  for (int i = 0; i < count; ++i) files.push_back(name.Picture(i));
   return files;
 }
 

@@ -12,6 +12,7 @@
 #include "lut/image/image.h"
 #include "lut/image/look.h"
 #include "lut/image/metering.h"
+#include "lut/image/picture_format.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/image/white_balance.h"
 #include "viewer/hud/hud_model.h"
@@ -219,12 +220,13 @@ void ShowTable(const std::vector<HudRow>& rows) {
 }
 
 void PictureButtons(const PanelTyping& typing, FlightCommands& flight) {
-  const bool png = ImGui::Button("PNG");
-  ImGui::SameLine();
-  const bool exr = ImGui::Button("EXR, linear");
-  if (!png && !exr) return;
   const auto& [width, height] = typing.picture_size;
-  flight.Request({exr, ImageSize{width, height}, typing.with_hud});
+  for (const PictureFormat& format : PictureFormats()) {
+    if (&format != &PictureFormats().front()) ImGui::SameLine();
+    const std::string label = std::string(format.name) + (format.StoresLight() ? ", linear" : "");
+    if (ImGui::Button(label.c_str()))
+      flight.Request({format.extension, ImageSize{width, height}, typing.with_hud});
+  }
 }
 
 }  // namespace

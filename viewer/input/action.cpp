@@ -115,10 +115,6 @@ template <SkyEvent kEvent>
 void JumpTo(FlightCommands& flight) {
   flight.Report(flight.controller().JumpTo(kEvent));
 }
-template <bool kIsExr>
-void TakePicture(FlightCommands& flight) {
-  flight.Request({.is_exr = kIsExr});
-}
 
 void Centre(FlightCommands& flight) {
   flight.controller().pilot().Centre(flight.controller().ground());
@@ -282,9 +278,12 @@ constexpr Action kActions[] = {
     Once(kTimeKeys, "next dusk", "F8", JumpTo<SkyEvent::kDusk>),
     Once(kTimeKeys, "next moonrise", "F9", JumpTo<SkyEvent::kMoonrise>),
     Once(kTimeKeys, "next moonset", "Shift+F9", JumpTo<SkyEvent::kMoonset>),
-    OnPad(GLFW_GAMEPAD_BUTTON_X,
-          NeedsPicture(Once(kCaptureKeys, "screenshot, PNG", "F3", TakePicture<false>))),
-    NeedsPicture(Once(kCaptureKeys, "screenshot, linear EXR", "Shift+F3", TakePicture<true>)),
+    OnPad(GLFW_GAMEPAD_BUTTON_X, NeedsPicture(Once(kCaptureKeys, "screenshot, PNG", "F3",
+                                                   [](FlightCommands& flight) {
+                                                     flight.Request({.extension = ".png"});
+                                                   }))),
+    NeedsPicture(Once(kCaptureKeys, "screenshot, linear EXR", "Shift+F3",
+                      [](FlightCommands& flight) { flight.Request({.extension = ".exr"}); })),
     Once(kCaptureKeys, "write the flight so far to a file", "Shift+F2",
          [](FlightCommands& flight) { flight.SaveFlight(); }),
     Once(kCaptureKeys, "fly this flight again", "Ctrl+R",

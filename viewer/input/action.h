@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "atmosphere/medium/medium_presets.h"
+#include "lut/image/picture_format.h"
 #include "viewer/flight/flight.h"
 #include "viewer/flight/flight_controller.h"
 #include "viewer/passes/auto_quality.h"
@@ -34,7 +35,7 @@ enum class WindowPart {
 
 /// A picture that is written to a file of the current folder.
 struct PictureOrder {
-  bool is_exr = false;                 // linear, otherwise a PNG
+  std::string extension = PictureFormats().front().extension;
   std::optional<ImageSize> size = {};  // nullopt: that of the window
   bool with_instruments = false;
 };

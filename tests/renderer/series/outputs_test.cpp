@@ -220,7 +220,7 @@ TEST(FrameList, HasALineForEachFrameWithSunAndMoon) {
   for (const Frame& frame :
        FramesFromTimes({{"noon", "2026-06-21T22:00:00Z"}, {}, {}, {}, {}}, day)) {
     records.push_back(RecordOf(frame, day.place, day.zone));
-    records.back().Set("file", FrameName("night.%03d.exr").Exr(frame.number).string());
+    records.back().Set("file", FrameName("night.%03d.exr").Picture(frame.number).string());
   }
   std::string text = HeaderOfList();
   for (const FrameRecord& record : records) text += ListLineOf(record);

@@ -51,7 +51,7 @@ TEST(FrameName, NumbersAreFilledIn) {
         {"f%0d.exr", 7, "f7.exr", "f.manifest.csv"},
         {"100%%-%02d.exr", 7, "100%-07.exr", "100%.manifest.csv"},
         {"still.exr", 7, "still.exr", "still.manifest.csv"}}) {
-    EXPECT_EQ(FrameName(one.pattern).Exr(one.number), one.exr) << one.pattern;
+    EXPECT_EQ(FrameName(one.pattern).Picture(one.number), one.exr) << one.pattern;
     EXPECT_EQ(FrameName(one.pattern).Manifest(), one.manifest) << one.pattern;
   }
   EXPECT_EQ(FrameName("d/frame.%04d.exr").Png(7), "d/frame.0007.png");
@@ -236,7 +236,7 @@ TEST_F(SeriesRun, AutomaticWhiteBalanceIsSmoothOverAFilm) {
   EXPECT_EQ(previews, 13) << "a node every four frames";
   std::vector<double> mireds;
   for (const Frame& frame : frames) {
-    const Metadata header = ReadExrMetadata(output.name.Exr(frame.number));
+    const Metadata header = ReadExrMetadata(output.name.Picture(frame.number));
     mireds.push_back(1e6 / std::stod(header.at("alpenglow.white_k")));
   }
   EXPECT_NEAR(mireds.front(), 1e6 / 6500.0, 0.1);

@@ -197,7 +197,7 @@ TEST_F(HudTest, APictureIsAskedForInTheSizeThatIsSeen) {
     return capture.has_value();
   });
   ASSERT_TRUE(found.has_value());
-  EXPECT_FALSE(capture->is_exr);
+  EXPECT_EQ(capture->extension, ".png");
   ASSERT_TRUE(capture->size.has_value());
   EXPECT_EQ(capture->size->width, kHudWidth);
   EXPECT_EQ(capture->size->height, kHudHeight);

@@ -491,7 +491,7 @@ TEST(Action, EffectsReportWhatTheyChange) {
   flight.Press("O");
   EXPECT_EQ(flight.quality().fixed, Quality::kLow) << "after automatic quality";
   flight.Press("Shift+F3");
-  EXPECT_TRUE(flight.requests.picture.value().is_exr);
+  EXPECT_EQ(flight.requests.picture.value().extension, ".exr");
   flight.Press("H");
   EXPECT_EQ(flight.requests.parts.back(), WindowPart::kInstruments);
 }
