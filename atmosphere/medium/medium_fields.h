@@ -4,6 +4,7 @@
 // ATMOSPHERE_FILE.md follow these tables.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,6 +12,9 @@
 #include "atmosphere/medium/medium.h"
 
 namespace alpenglow::atmosphere {
+
+/// Returns the kind of refraction as the file names it.
+[[nodiscard]] std::string NameOf(RefractionBy refraction);
 
 /// Returns the keys above all sections. The reader of the file takes their values itself.
 [[nodiscard]] const TomlFields<Medium>& TopFieldsOfMedium();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "atmosphere/astronomy/night_sky.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/scene/volume_file.h"
 
@@ -260,6 +261,12 @@ const TomlFields<Volume>& VolumeFields() {
        {"g", Number<Volume>({-0.99, 0.99}), "", "", "of Henyey and Greenstein", "0.5"}}};
   return fields;
 }
+
+std::vector<TomlFields<Scene>> TablesOfScene() {
+  return {PlaceFields(), TimeFields(), AtmosphereFields(), NightFields()};
+}
+
+std::string NameOf(Light::Type type) { return kLightTypes.Of(type); }
 
 std::vector<SceneSection> SectionsOfScene() {
   return {

@@ -23,6 +23,12 @@ namespace alpenglow::renderer {
 [[nodiscard]] const TomlFields<Scene>& NightFields();
 [[nodiscard]] const TomlFields<Volume>& VolumeFields();
 
+/// Returns the tables whose members are those of a scene itself: place, time, atmosphere, night.
+[[nodiscard]] std::vector<TomlFields<Scene>> TablesOfScene();
+
+/// Returns the type of a lamp as the file names it.
+[[nodiscard]] std::string NameOf(Light::Type type);
+
 /// A section as the manual shows it.
 struct SceneSection {
   std::string name;

@@ -14,6 +14,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/medium_fields.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/program.h"
 #include "lut/cli/terminal.h"
@@ -83,6 +84,13 @@ Metadata NamedValuesOf(const TomlFields<Object>& fields, const Object& object) {
   return values;
 }
 
+/// Adds the values that are recorded by name, under their own keys.
+template <typename Object>
+void AddNamedValues(const TomlFields<Object>& fields, const Object& object, Metadata& metadata) {
+  for (const auto& [key, value] : NamedValuesOf(fields, object))
+    metadata["alpenglow." + key] = value;
+}
+
 template <typename Object>
 std::string NamedText(const TomlFields<Object>& fields, const Object& object) {
   std::string text;
@@ -130,13 +138,11 @@ std::string TerrainText(const Scene& scene, const FileHashes& hashes) {
 }
 
 std::string LightText(const Light& light, const FileHashes& hashes) {
-  std::string text =
-      fmt::format("{} at {}, {}, {}: {} cd, {} K, radius {} m",
-                  light.type == Light::Type::kSpot ? "spot" : "point",
-                  fmt::format("{}", light.place.latitude_deg),
-                  fmt::format("{}", light.place.longitude_deg), HeightText(light.height),
-                  light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
-                  light.temperature_k, light.radius_m);
+  std::string text = fmt::format(
+      "{} at {}, {}, {}: {} cd, {} K, radius {} m", NameOf(light.type), light.place.latitude_deg,
+      light.place.longitude_deg, HeightText(light.height),
+      light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
+      light.temperature_k, light.radius_m);
   if (light.ies) {
     text += ", " + hashes.names_and_hashes.at(*light.ies);
   } else if (light.type == Light::Type::kPoint) {
@@ -186,8 +192,7 @@ void AddAirOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) 
   const Medium& medium = scene.medium;
   metadata["alpenglow.atmosphere"] = medium.name;
   metadata["alpenglow.atmosphere_hash"] = fmt::format("{:016x}", MediumHash(medium));
-  metadata["alpenglow.refraction"] =
-      medium.refraction == RefractionBy::kAlmanacs ? "almanacs" : "molecules";
+  metadata["alpenglow.refraction"] = NameOf(medium.refraction);
   if (scene.town_zenith)
     metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
   for (const MediumLayer& layer : scene.layers)
@@ -254,8 +259,8 @@ Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes) {
         fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
                     lens.focus_m, lens.blades, DegreesText(lens.blade_rotation_rad));
   }
-  for (const auto& [key, value] : NamedValuesOf(CameraFields(), camera))
-    metadata["alpenglow." + key] = value;
+  AddNamedValues(CameraFields(), camera, metadata);
+  for (const TomlFields<Scene>& fields : TablesOfScene()) AddNamedValues(fields, scene, metadata);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     metadata[fmt::format("alpenglow.light_{}", i)] =
         LightText(scene.lights[i], hashes) + NamedText(LightFields(), scene.lights[i]);
