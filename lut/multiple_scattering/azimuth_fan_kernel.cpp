@@ -47,7 +47,7 @@ void FindSuns(const FanSuns& work) {
     const float mu_s = shared::min(
         shared::max((work.radius_mu_s + work.distance * nu) * work.inverse_radius, -1.0F), 1.0F);
     const float sines = std::sqrt(shared::max(view_sine2 * (1.0F - mu_s) * (1.0F + mu_s), 1e-12F));
-    work.cosine[k] = shared::min(shared::max((nu - work.mu * mu_s) / sines, -1.0F), 1.0F);
+    work.cosine[k] = shared::AzimuthCosine<float>(work.mu, mu_s, nu, sines);
     work.position[k] = 0.5F * (1.0F + mu_s) * work.table_cells;
     if (work.sun_sine != nullptr)
       work.sun_sine[k] = std::sqrt(shared::max((1.0F - mu_s) * (1.0F + mu_s), 0.0F));

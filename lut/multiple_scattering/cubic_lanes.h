@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Cubic interpolation (cubic_taps.glsl) in numbers or batches. It is a part of the kernels of this
-// folder, which are compiled once per instruction set.
+// Cubic interpolation (cubic_taps.glsl) and the cosine of the azimuth (azimuth_cosine.glsl) in numbers
+// or batches. This header is a part of the kernels of this folder, which are compiled once per
+// instruction set.
 #pragma once
 
 #include "atmosphere/ray/batch.h"
@@ -17,6 +18,8 @@ namespace shared {
 using namespace atmosphere::shared;
 // clang-format off
 #include "atmosphere/shared_glsl/shared_begin.h"
+#include "lut/tables/azimuth_cosine.glsl"
+//
 #include "lut/tables/cubic_taps.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on

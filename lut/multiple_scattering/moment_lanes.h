@@ -127,8 +127,7 @@ T CosineOfAzimuth(const T& mu, const T& sine, const T& mu_s, const T& nu) {
   using namespace shared;
   const T sine_s_squared = (T(1.0F) - mu_s) * (T(1.0F) + mu_s);
   const T sines = sine * sqrt(max(sine_s_squared, T(1e-12F)));
-  const T cosine = (nu - mu * mu_s) / max(sines, T(1e-6F));
-  return min(max(cosine, T(-1.0F)), T(1.0F));
+  return AzimuthCosine<T>(mu, mu_s, nu, max(sines, T(1e-6F)));
 }
 
 // Calls `run` with the degree, and with whether light is polarised, as compile-time constants.

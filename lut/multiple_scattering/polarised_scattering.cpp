@@ -6,12 +6,13 @@
 
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/moment_grid.h"
+#include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {
 
 double AzimuthCosineOrAhead(double mu, double mu_s, double nu) {
   const double sines = SineOf(mu) * SineOf(mu_s);
-  return sines < 1e-6 ? 1.0 : std::clamp((nu - mu * mu_s) / sines, -1.0, 1.0);
+  return sines < 1e-6 ? 1.0 : shared::AzimuthCosine(mu, mu_s, nu, sines);
 }
 
 PolarisedLight PolarisedOnce(const Medium& medium, const ScatteredOnce<float>& once,

@@ -13,6 +13,7 @@
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase_forms.h"
 #include "atmosphere/medium/phase_table.h"
+#include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {
 void RequireDegree(int degree) {
@@ -65,7 +66,7 @@ Moments SphericalHarmonics(int degree, float mu, float cos_azimuth) {
 float AzimuthCosine(float mu, float mu_s, float nu) {
   const float sines =
       std::sqrt(std::max((1.0F - mu) * (1.0F + mu) * (1.0F - mu_s) * (1.0F + mu_s), 1e-12F));
-  return std::clamp((nu - mu * mu_s) / sines, -1.0F, 1.0F);
+  return shared::AzimuthCosine(mu, mu_s, nu, sines);
 }
 
 namespace {

@@ -166,8 +166,7 @@ ScatteringTable::AxisTaps ScatteringTable::AngleTaps(const Start& start, double 
   const double sines = std::sqrt(
       std::max((1.0 - start.mu) * (1.0 + start.mu) * (1.0 - start.mu_s) * (1.0 + start.mu_s), 0.0));
   // If the azimuth is undefined, all texels hold one value.
-  const double cosine =
-      sines > 0.0 ? std::clamp((nu - start.mu * start.mu_s) / sines, -1.0, 1.0) : 1.0;
+  const double cosine = sines > 0.0 ? shared::AzimuthCosine(start.mu, start.mu_s, nu, sines) : 1.0;
   const auto at = AxisPosition::FromUnit(std::acos(cosine) / kPi, size_.nu);
   AxisTaps taps{{}, CatmullRom(at.fraction)};
   // Beyond both ends of the axis the light is mirrored.

@@ -6,7 +6,7 @@
 //
 // It also provides sizes of tables, checked before anything is allocated, and positions between
 // texels: linear between two of them, and cubic on a uniform grid, with four neighbours and their
-// Catmull-Rom weights.
+// Catmull-Rom weights. The shared texts cubic_taps.glsl and azimuth_cosine.glsl are read here as C++.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +24,8 @@
 namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/shared_glsl/shared_begin.h"
+#include "lut/tables/azimuth_cosine.glsl"
+//
 #include "lut/tables/cubic_taps.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
