@@ -206,14 +206,9 @@ CameraRays::CameraRays(const Camera& camera, int width, int height, const Camera
       tangent_(std::tan(0.5 * camera.fov_rad)),
       eye_(stand.eye),
       polariser_rad_(camera.polariser_rad) {
-  const double heading = camera.heading_rad, pitch = camera.pitch_rad, roll = camera.roll_rad;
-  const glm::dvec3 forward{std::cos(pitch) * std::sin(heading), std::cos(pitch) * std::cos(heading),
-                           std::sin(pitch)};
-  const glm::dvec3 level_right{std::cos(heading), -std::sin(heading), 0.0};
-  const glm::dvec3 level_up = glm::cross(level_right, forward);
-  forward_ = stand.frame_from_enu * forward;
-  right_ = stand.frame_from_enu * (std::cos(roll) * level_right - std::sin(roll) * level_up);
-  up_ = stand.frame_from_enu * (std::cos(roll) * level_up + std::sin(roll) * level_right);
+  const ViewAxes axes = AxesFromAngles(camera.heading_rad, camera.pitch_rad, camera.roll_rad);
+  axes_ = {stand.frame_from_enu * axes.right, stand.frame_from_enu * axes.up,
+           stand.frame_from_enu * axes.forward};
   if (camera.lens && !panorama_) {
     const ThinLens& lens = *camera.lens;
     lens_ = Lens{Iris(lens.blades, lens.blade_rotation_rad),
@@ -225,12 +220,13 @@ glm::dvec3 CameraRays::Direction(double x, double y) const {
   if (panorama_) {
     const double azimuth = (x / width_ - 0.5) * 2.0 * kPi;
     const double elevation = (0.5 - y / height_) * kPi;
-    return std::cos(elevation) * (std::cos(azimuth) * forward_ + std::sin(azimuth) * right_) +
-           std::sin(elevation) * up_;
+    return std::cos(elevation) *
+               (std::cos(azimuth) * axes_.forward + std::sin(azimuth) * axes_.right) +
+           std::sin(elevation) * axes_.up;
   }
   const double scale = 2.0 * tangent_ / width_;
-  return glm::normalize(forward_ + (x - 0.5 * width_) * scale * right_ +
-                        (0.5 * height_ - y) * scale * up_);
+  return glm::normalize(axes_.forward + (x - 0.5 * width_) * scale * axes_.right +
+                        (0.5 * height_ - y) * scale * axes_.up);
 }
 
 CameraRay CameraRays::MiddleRay(double x, double y) const {
@@ -242,14 +238,14 @@ CameraRay CameraRays::Ray(double x, double y, std::array<double, 2> lens) const 
   if (!lens_) return MiddleRay(x, y);
   const glm::dvec3 through = Direction(x, y);
   const glm::dvec2 point = lens_->radius_m * lens_->iris.Point(lens);
-  const glm::dvec3 offset = point.x * right_ + point.y * up_;
-  const glm::dvec3 in_focus = lens_->focus_m / glm::dot(through, forward_) * through;
+  const glm::dvec3 offset = point.x * axes_.right + point.y * axes_.up;
+  const glm::dvec3 in_focus = lens_->focus_m / glm::dot(through, axes_.forward) * through;
   return {eye_, eye_ + offset, glm::normalize(in_focus - offset), through};
 }
 
 std::optional<std::array<double, 2>> CameraRays::PlaceOf(const glm::dvec3& direction) const {
-  const double ahead = glm::dot(direction, forward_);
-  const double right = glm::dot(direction, right_), up = glm::dot(direction, up_);
+  const double ahead = glm::dot(direction, axes_.forward);
+  const double right = glm::dot(direction, axes_.right), up = glm::dot(direction, axes_.up);
   if (panorama_) {
     const double elevation = std::asin(std::clamp(up / glm::length(direction), -1.0, 1.0));
     return std::array{width_ * (0.5 + std::atan2(right, ahead) / (2.0 * kPi)),
@@ -264,10 +260,10 @@ std::optional<ArrivingRay> CameraRays::RayFrom(const glm::dvec3& direction,
                                                std::array<double, 2> lens) const {
   glm::dvec3 offset(0.0), through = direction;
   if (lens_) {
-    const double ahead = glm::dot(direction, forward_);
+    const double ahead = glm::dot(direction, axes_.forward);
     if (ahead <= 0.0) return std::nullopt;
     const glm::dvec2 point = lens_->radius_m * lens_->iris.Point(lens);
-    offset = point.x * right_ + point.y * up_;
+    offset = point.x * axes_.right + point.y * axes_.up;
     through = glm::normalize(offset + lens_->focus_m / ahead * direction);
   }
   const auto place = PlaceOf(through);
@@ -299,20 +295,20 @@ double CameraRays::PixelSolidAngle(int column, int row) const {
          from_foot(left + scale, upper) + from_foot(left, upper);
 }
 
-PictureAxes CameraRays::AxesAt(const glm::dvec3& direction) const {
-  const glm::dvec3 level = panorama_ ? glm::cross(direction, up_) : right_;
+ViewAxes CameraRays::AxesAt(const glm::dvec3& direction) const {
+  const glm::dvec3 level = panorama_ ? glm::cross(direction, axes_.up) : axes_.right;
   const glm::dvec3 up = glm::normalize(glm::cross(level, direction));
-  return {up, glm::cross(direction, up)};
+  return {glm::cross(direction, up), up, direction};
 }
 
 std::optional<glm::dvec3> CameraRays::PassedBy(const glm::dvec3& direction) const {
   if (!polariser_rad_) return std::nullopt;
   const double cosine = std::cos(*polariser_rad_), sine = std::sin(*polariser_rad_);
   if (panorama_) {
-    const PictureAxes axes = AxesAt(direction);
+    const ViewAxes axes = AxesAt(direction);
     return cosine * axes.up + sine * axes.right;
   }
-  return glm::normalize(glm::cross(cosine * right_ - sine * up_, direction));
+  return glm::normalize(glm::cross(cosine * axes_.right - sine * axes_.up, direction));
 }
 
 // A ray from infinity meets the plane of the picture, one unit ahead, as far from the foot of its
@@ -324,10 +320,11 @@ double CameraRays::WidestAngle(double beyond) const {
   return std::atan(corner + (lens_ ? lens_->radius_m / lens_->focus_m : 0.0));
 }
 
-double CameraRays::AngleTo(const CameraRays& other) const { return AngleTo(other.forward_); }
+double CameraRays::AngleTo(const CameraRays& other) const { return AngleTo(other.axes_.forward); }
 
 double CameraRays::AngleTo(const glm::dvec3& direction) const {
-  return std::atan2(glm::length(glm::cross(forward_, direction)), glm::dot(forward_, direction));
+  return std::atan2(glm::length(glm::cross(axes_.forward, direction)),
+                    glm::dot(axes_.forward, direction));
 }
 
 double CameraRays::PixelAngle() const {
@@ -335,7 +332,7 @@ double CameraRays::PixelAngle() const {
 }
 
 double CameraRays::BlurRadius(const glm::dvec3& offset) const {
-  const double depth_m = glm::dot(offset, forward_);
+  const double depth_m = glm::dot(offset, axes_.forward);
   if (!lens_ || !(depth_m > 0.0)) return 0.0;
   return lens_->radius_m * std::abs(1.0 / depth_m - 1.0 / lens_->focus_m);
 }
@@ -343,11 +340,13 @@ double CameraRays::BlurRadius(const glm::dvec3& offset) const {
 std::optional<CameraRays::Blur> CameraRays::BlurAt(const glm::dvec3& offset,
                                                    const glm::dvec3& through,
                                                    double soft_radius) const {
-  const double depth_m = glm::dot(offset, forward_);
-  const double ahead = glm::dot(through, forward_);
+  const double depth_m = glm::dot(offset, axes_.forward);
+  const double ahead = glm::dot(through, axes_.forward);
   if (!(depth_m > 0.0) || !(ahead > 0.0)) return std::nullopt;
-  const glm::dvec2 point(glm::dot(offset, right_) / depth_m, glm::dot(offset, up_) / depth_m);
-  const glm::dvec2 seen(glm::dot(through, right_) / ahead, glm::dot(through, up_) / ahead);
+  const glm::dvec2 point(glm::dot(offset, axes_.right) / depth_m,
+                         glm::dot(offset, axes_.up) / depth_m);
+  const glm::dvec2 seen(glm::dot(through, axes_.right) / ahead,
+                        glm::dot(through, axes_.up) / ahead);
   const double unsharpness = 1.0 / depth_m - 1.0 / lens_->focus_m;  // signed
   const double blur = lens_->radius_m * std::abs(unsharpness);
   // The line from the point in focus to this one meets the lens at (point - seen) / (1/z - 1/s).
@@ -365,7 +364,7 @@ std::optional<CameraRays::Blur> CameraRays::BlurAt(const glm::dvec3& offset,
   const double falloff = 1.0 - std::pow(t, 2.0 * n);
   const double reach = lens_->radius_m / outer;  // lens radius per unit of blur
   const glm::dvec2 on_lens = reach * apart;
-  return Blur{on_lens.x * right_ + on_lens.y * up_, falloff * falloff / (area * mean)};
+  return Blur{on_lens.x * axes_.right + on_lens.y * axes_.up, falloff * falloff / (area * mean)};
 }
 
 CameraRays Between(const CameraRays& from, const CameraRays& to, double share) {
@@ -373,9 +372,10 @@ CameraRays Between(const CameraRays& from, const CameraRays& to, double share) {
   const auto mixed = [&](const auto& a, const auto& b) { return (1.0 - share) * a + share * b; };
   between.eye_ = mixed(from.eye_, to.eye_);
   between.tangent_ = mixed(from.tangent_, to.tangent_);
-  between.forward_ = glm::normalize(mixed(from.forward_, to.forward_));
-  between.right_ = glm::normalize(glm::cross(between.forward_, mixed(from.up_, to.up_)));
-  between.up_ = glm::cross(between.right_, between.forward_);
+  between.axes_.forward = glm::normalize(mixed(from.axes_.forward, to.axes_.forward));
+  between.axes_.right =
+      glm::normalize(glm::cross(between.axes_.forward, mixed(from.axes_.up, to.axes_.up)));
+  between.axes_.up = glm::cross(between.axes_.right, between.axes_.forward);
   return between;
 }
 

@@ -67,6 +67,7 @@
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/math/view_axes.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {
@@ -159,12 +160,6 @@ struct ArrivingRay {
   double x, y;
 };
 
-/// Unit vectors perpendicular to a viewing direction, oriented like the picture.
-struct PictureAxes {
-  glm::dvec3 up{0.0};
-  glm::dvec3 right{0.0};
-};
-
 /// Position and orientation of a camera in a frame. Columns of `frame_from_enu`: local east, north,
 /// up.
 struct CameraStand {
@@ -208,8 +203,8 @@ class CameraRays {
   /// Returns the solid angle of a pixel [sr].
   [[nodiscard]] double PixelSolidAngle(int column, int row) const;
 
-  /// Returns the picture's vertical and horizontal axes, perpendicular to a direction.
-  [[nodiscard]] PictureAxes AxesAt(const glm::dvec3& direction) const;
+  /// Returns the unit axes of the picture at a direction, which is their third.
+  [[nodiscard]] ViewAxes AxesAt(const glm::dvec3& direction) const;
 
   /// Returns the unit vector along which light from a direction must vibrate to pass the polariser;
   /// empty without a polariser.
@@ -264,7 +259,7 @@ class CameraRays {
   bool panorama_;
   double tangent_;  // tangent of half the horizontal field of view
   glm::dvec3 eye_;
-  glm::dvec3 forward_, right_, up_;
+  ViewAxes axes_;  // unit
   std::optional<Lens> lens_;
   std::optional<double> polariser_rad_;
 };

@@ -9,7 +9,7 @@ namespace {
 
 /// Returns the vertical across a view, and the axis to the right of it. A view straight up or down
 /// is treated as tilted towards the sun's azimuth, as in polarised_scattering.h.
-PictureAxes VerticalAxes(const glm::dvec3& view, const glm::dvec3& up, const glm::dvec3& to_sun) {
+ViewAxes VerticalAxes(const glm::dvec3& view, const glm::dvec3& up, const glm::dvec3& to_sun) {
   const double mu = glm::dot(view, up), mu_s = glm::dot(to_sun, up);
   const glm::dvec3 level = view - mu * up, level_sun = to_sun - mu_s * up;
   const double sine = glm::length(level), sun_sine = glm::length(level_sun);
@@ -19,19 +19,19 @@ PictureAxes VerticalAxes(const glm::dvec3& view, const glm::dvec3& up, const glm
                                        : glm::normalize(glm::cross(view, {0.3, -0.5, 0.8}));
   const glm::dvec3 upright =
       glm::normalize(std::sqrt(std::max(1.0 - mu * mu, 0.0)) * up - mu * away);
-  return {upright, glm::cross(view, upright)};
+  return {glm::cross(view, upright), upright, view};
 }
 
 }  // namespace
 
-Analyser AnalyserAlong(const glm::dvec3& p, const PictureAxes& axes) {
+Analyser AnalyserAlong(const glm::dvec3& p, const ViewAxes& axes) {
   const double up = glm::dot(p, axes.up), right = glm::dot(p, axes.right);
   return {static_cast<float>((up - right) * (up + right)), static_cast<float>(2.0 * up * right)};
 }
 
 PolarisedLight InAxes(const PolarisedLight& of_vertical, const glm::dvec3& view,
-                      const glm::dvec3& up, const glm::dvec3& to_sun, const PictureAxes& axes) {
-  const PictureAxes vertical = VerticalAxes(view, up, to_sun);
+                      const glm::dvec3& up, const glm::dvec3& to_sun, const ViewAxes& axes) {
+  const ViewAxes vertical = VerticalAxes(view, up, to_sun);
   const Analyser turned = AnalyserAlong(axes.up, vertical);
   const float side = glm::dot(to_sun, vertical.right) > 0.0 ? -1.0F : 1.0F;
   PolarisedLight light = of_vertical;

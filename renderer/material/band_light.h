@@ -60,14 +60,14 @@ class InDouble {
 struct Analyser {
   float q, u;
 };
-[[nodiscard]] Analyser AnalyserAlong(const glm::dvec3& p, const PictureAxes& axes);
+[[nodiscard]] Analyser AnalyserAlong(const glm::dvec3& p, const ViewAxes& axes);
 
 /// Returns polarised light scattered in the air, whose Stokes parameters refer to the vertical
 /// plane (polarised_scattering.h), in the axes of the picture.
 /// @param view, up, to_sun  unit vectors; up is the vertical.
 [[nodiscard]] PolarisedLight InAxes(const PolarisedLight& of_vertical, const glm::dvec3& view,
                                     const glm::dvec3& up, const glm::dvec3& to_sun,
-                                    const PictureAxes& axes);
+                                    const ViewAxes& axes);
 
 /// Returns the light that passes the analyser: half of unpolarised light.
 /// @param polarised  its Q and U in the axes of the analyser; null: unpolarised.

@@ -197,7 +197,7 @@ BandLight GroundLight::OfLamps(const SeenGround& seen, const LampNodes& near) co
 }
 
 PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSources& from,
-                                      const PictureAxes& axes,
+                                      const ViewAxes& axes,
                                       std::array<double, 2> disk_sample) const {
   const Lighting& light = from.light;
   const glm::dvec3& to_eye = seen.to_eye;

@@ -78,7 +78,7 @@ class GroundLight {
   /// of polarisation p of the incident light changes the result for a wave near Brewster's angle by
   /// up to p. All other light from the ground is taken as unpolarised.
   [[nodiscard]] PolarisedLight Polarised(const SeenGround& seen, const GroundSources& from,
-                                         const PictureAxes& axes,
+                                         const ViewAxes& axes,
                                          std::array<double, 2> disk_sample) const;
 
   [[nodiscard]] LocalLight LocalLightAt(const glm::dvec3& point, const Lighting& light) const;

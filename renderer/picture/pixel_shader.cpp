@@ -455,7 +455,7 @@ BandLight PixelShader::DiskFrom(const glm::dvec3& direction, DiskBehind disk) co
 PolarisedLight PixelShader::PolarisedGround(const Hit& hit, const CameraRay& ray,
                                             std::array<double, 2> disk_sample) const {
   const GroundLight& ground_light = frame_->over_ground().ground_light;
-  const PictureAxes axes = frame_->camera().AxesAt(ray.through);
+  const ViewAxes axes = frame_->camera().AxesAt(ray.through);
   const SeenGround seen = ground_light.SeenFrom(hit, -ray.direction, frame_->light());
   std::optional<PolarisedLight> sum;
   for (const FrameLight& source : frame_->lights()) {

@@ -54,9 +54,9 @@ class ViewPyramid {
  public:
   ViewPyramid(const FrameTransform& eye, const LandView& view)
       : at_(eye.origin_m()), up_(eye.axes()[2]), bends_per_m_(view.bends_per_m) {
-    const double wide = glm::length(view.right), high = glm::length(view.up);
-    const glm::dvec3 forward = eye.Along(view.forward);
-    const glm::dvec3 right = eye.Along(view.right) / wide, up = eye.Along(view.up) / high;
+    const double wide = glm::length(view.axes.right), high = glm::length(view.axes.up);
+    const glm::dvec3 forward = eye.Along(view.axes.forward);
+    const glm::dvec3 right = eye.Along(view.axes.right) / wide, up = eye.Along(view.axes.up) / high;
     planes_ = {wide * forward + right, wide * forward - right, high * forward + up,
                high * forward - up, forward};
   }

@@ -17,16 +17,17 @@
 #include <span>
 #include <vector>
 
+#include "atmosphere/math/view_axes.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/land_chunk.h"
 
 namespace alpenglow::renderer {
 
-/// View of the land, as in view/block.glsl: axes in the eye's frame (east, north, up).
+/// What a view asks of the land.
 struct LandView {
-  glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the horizontal field of view
-  glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half the vertical one
-  glm::dvec3 forward{0.0, 1.0, 0.0};
+  /// In the frame east, north, up of the eye. The axes right and up reach from the middle of the
+  /// picture to its sides, where forward is 1.
+  ViewAxes axes;
   int rays = 1;              // rays per pixel; terrain is finer for more
   double bends_per_m = 0.0;  // largest curvature of light rays, which raises land
 };

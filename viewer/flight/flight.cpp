@@ -49,13 +49,7 @@ CameraPose Placed(const CameraPose& eye, const EyePlacement& placement) {
 }
 
 ViewAxes AxesOf(const CameraPose& eye) {
-  const double heading = eye.heading_rad, pitch = eye.pitch_rad, roll = eye.roll_rad;
-  const glm::dvec3 forward{std::cos(pitch) * std::sin(heading), std::cos(pitch) * std::cos(heading),
-                           std::sin(pitch)};
-  const glm::dvec3 level_right{std::cos(heading), -std::sin(heading), 0.0};
-  const glm::dvec3 level_up = glm::cross(level_right, forward);
-  return {std::cos(roll) * level_right - std::sin(roll) * level_up,
-          std::cos(roll) * level_up + std::sin(roll) * level_right, forward};
+  return AxesFromAngles(eye.heading_rad, eye.pitch_rad, eye.roll_rad);
 }
 
 double SpeedAt(double above_ground_m) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/view_axes.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/scene/places.h"
@@ -40,10 +41,7 @@ struct Steering {
   double roll_right = 0.0;
 };
 
-/// Unit vectors of the view, in the frame (east, north, up) at the eye.
-struct ViewAxes {
-  glm::dvec3 right, up, forward;
-};
+/// Returns the unit axes of the view, in the frame east, north, up at the eye.
 [[nodiscard]] ViewAxes AxesOf(const CameraPose& eye);
 
 /// Returns the speed of the free camera [m/s] at a height over the ground: walking pace at the

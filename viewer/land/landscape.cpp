@@ -60,7 +60,7 @@ LandEye Landscape::EyeAt(const Place& eye) const {
 void Landscape::FollowView(double seconds) {
   constexpr double kTime_s = 0.5;
   const double usual = std::tan(kPi / 6.0);
-  const double by_lens = std::clamp(std::sqrt(usual / glm::length(view_.right)), 1.0, 2.0);
+  const double by_lens = std::clamp(std::sqrt(usual / glm::length(view_.axes.right)), 1.0, 2.0);
   const double first_m = size_.detail * std::sqrt(eye_.size.column_m * eye_.size.row_m);
   const double by_height =
       std::clamp(1.0 + 0.35 * std::log2(std::max(eye_.above_m, 1.0) / first_m), 1.0, 3.0);
@@ -206,14 +206,15 @@ LandBlock Landscape::Block() const {
   return block;
 }
 
-std::vector<SeenChunk> Landscape::DrawnIn(LandView narrower) const {
-  narrower.bends_per_m = view_.bends_per_m;
+std::vector<SeenChunk> Landscape::DrawnIn(const ViewAxes& narrower) const {
+  LandView view = view_;
+  view.axes = narrower;
   const FrameTransform eye(set_->anchor().frame, LocalFrame(ellipsoid_, eye_place_));
-  return InView(Choice().drawn, eye, narrower);
+  return InView(Choice().drawn, eye, view);
 }
 
 void Landscape::Draw(LandDrawn what, GLuint view_binding, const LandLook& look,
-                     const std::optional<LandView>& narrower) {
+                     const std::optional<ViewAxes>& narrower) {
   LandPass::Clear(what);
   if (mesh_) mesh_->Draw(pass_, what, look, eye_place_, view_binding);
   if (!set_) return;

@@ -110,7 +110,7 @@ class Landscape {
   /// DepthPrepass, which is cleared first. The uniform block View must be bound to `view_binding`.
   /// @param narrower  another view, which that block has: only chunks that may be in it are drawn.
   void Draw(LandDrawn what, GLuint view_binding, const LandLook& look = {},
-            const std::optional<LandView>& narrower = {});
+            const std::optional<ViewAxes>& narrower = {});
   /// Returns the programs that draw.
   [[nodiscard]] LandPass& pass() { return pass_; }
 
@@ -163,7 +163,7 @@ class Landscape {
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
   /// Begins the choice of the chunks to draw. Set and tree must not be used until Choice().
   void Choose(double seconds);
-  [[nodiscard]] std::vector<SeenChunk> DrawnIn(LandView narrower) const;
+  [[nodiscard]] std::vector<SeenChunk> DrawnIn(const ViewAxes& narrower) const;
   /// Waits for the choice, and returns it.
   const LandChoice& Choice() const;
   void WaitForWork();

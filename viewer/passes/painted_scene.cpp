@@ -43,9 +43,7 @@ GroundFollower::View GroundViewOf(const PaintedView& view, const LightsOfSky& li
 }
 
 LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) {
-  LandView seen = LandViewOf(view, samples);
-  seen.bends_per_m = -RefractivitySlopeAt(GentleAirOf(medium), 0.0);
-  return seen;
+  return {AxesOf(view), samples, -RefractivitySlopeAt(GentleAirOf(medium), 0.0)};
 }
 
 AirView AirViewOf(const CameraPose& eye, const LightDirection& light) {

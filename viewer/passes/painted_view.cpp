@@ -49,10 +49,10 @@ glm::dvec2 HalfViewOf(const PaintedView& view) {
   return {half_width, half_width * view.height / view.width};
 }
 
-LandView LandViewOf(const PaintedView& view, int samples) {
+ViewAxes AxesOf(const PaintedView& view) {
   const ViewAxes axes = AxesOf(view.eye);
   const glm::dvec2 half = HalfViewOf(view) / view.part.z;
-  return {half.x * axes.right, half.y * axes.up, axes.forward, samples};
+  return {half.x * axes.right, half.y * axes.up, axes.forward};
 }
 
 // The shift is equal for all pixels.
@@ -64,7 +64,7 @@ glm::dvec2 ShiftOf(const PixelRay& ray, const PaintedView& view) {
 
 std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,
                                      const PaintedView& view) {
-  const LandView axes = LandViewOf(view);
+  const ViewAxes axes = AxesOf(view);
   const double along = glm::dot(direction, axes.forward);
   if (along <= 0.0) return std::nullopt;
   const auto pixel = [&](const glm::dvec3& axis, double part, int side) {
@@ -92,7 +92,7 @@ double RadiusUnder(const CameraPose& eye, const Medium& medium) {
 // A ray d is below the horizon with cosine c <= 0 where d.z - c |d| < 0. This function is convex
 // over the picture, and so is its minimum over each row as a function of the row.
 int RowsOfPlanet(const PaintedView& view, double radius_km) {
-  const LandView axes = LandViewOf(view);
+  const ViewAxes axes = AxesOf(view);
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
   const double horizon = shared::HorizonCosine(altitude_km, radius_km);
   const glm::dvec3 middle =

@@ -44,9 +44,9 @@ struct PaintedView {
 /// is drawn whole.
 [[nodiscard]] glm::dvec2 HalfViewOf(const PaintedView& view);
 
-/// Returns the axes of the view.
-/// @param samples  number of rays per pixel.
-[[nodiscard]] LandView LandViewOf(const PaintedView& view, int samples = 1);
+/// Returns the axes of the view, as in view/block.glsl: right and up reach from the middle of the
+/// picture to its sides, where forward is 1.
+[[nodiscard]] ViewAxes AxesOf(const PaintedView& view);
 
 /// One of the rays of a pixel.
 struct PixelRay {

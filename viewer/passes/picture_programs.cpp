@@ -207,7 +207,7 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const Frame& frame, co
                                const LightsOfView& lights) const {
   const PaintedView& view = frame.view;
   const Medium& medium = scene.air().air()->medium();
-  const LandView axes = LandViewOf(view);
+  const ViewAxes axes = AxesOf(view);
   const glm::dvec2 shift = ShiftOf(ray, view);
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;

@@ -359,7 +359,7 @@ void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const Frame& 
     LandPass::Clear(LandDrawn::kOutline);
   } else {
     scene_.land().Draw(LandDrawn::kOutline, kViewBinding, {alone.bend.has_value(), false},
-                       LandViewOf(alone.view));
+                       AxesOf(alone.view));
   }
   small_disk_painter_.light().Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);

@@ -18,7 +18,7 @@ constexpr double kReach = 1.3;
 
 // Returns the pixel in which a vector from the eye points, in the coordinates of gl_FragCoord.
 glm::dvec2 PixelOf(const glm::dvec3& towards, const PaintedView& view) {
-  const LandView axes = LandViewOf(view);
+  const ViewAxes axes = AxesOf(view);
   const double along = glm::dot(towards, axes.forward);
   const auto share = [&](const glm::dvec3& axis) {
     return glm::dot(towards, axis) / glm::dot(axis, axis) / along;
@@ -32,7 +32,7 @@ glm::dvec2 PixelOf(const glm::dvec3& towards, const PaintedView& view) {
 
 bool IsSmallDisk(const glm::dvec3& towards, double radius_rad, const PaintedView& view) {
   constexpr double kLeast_pixels = 2.5;
-  const double along = glm::dot(towards, LandViewOf(view).forward);
+  const double along = glm::dot(towards, AxesOf(view).forward);
   return radius_rad < kLeast_pixels * PixelAngle(view) * along;
 }
 
@@ -65,7 +65,7 @@ double SmallDiskPainter::SmallestRadius(const PaintedView& whole) {
 // The map from one picture to the other is linear over the disk: its ends are off by a share of
 // r tan(a), with the angle a from the middle of the view.
 void SmallDiskPainter::AddTo(const PaintedView& whole, const PaintedView& alone) const {
-  const LandView axes = LandViewOf(alone);
+  const ViewAxes axes = AxesOf(alone);
   const auto place = [&](double x, double y) {
     return PixelOf(axes.forward + x * axes.right + y * axes.up, whole);
   };

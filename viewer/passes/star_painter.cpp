@@ -42,7 +42,7 @@ struct StarPlace {
 class StarPlane {
  public:
   explicit StarPlane(const PaintedView& view)
-      : axes_(LandViewOf(view)),
+      : axes_(AxesOf(view)),
         half_(glm::length(axes_.right), glm::length(axes_.up)),
         sides_(view.width, view.height),
         middle_(view.part.x * view.part.z, view.part.y * view.part.w),
@@ -91,7 +91,7 @@ class StarPlane {
   }
 
  private:
-  LandView axes_;
+  ViewAxes axes_;
   glm::dvec2 half_, sides_, middle_, pixel_width_;  // half_: of the picture's extent
   double pixel_angle_;
 };

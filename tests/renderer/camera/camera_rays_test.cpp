@@ -63,7 +63,7 @@ TEST(CameraRays, APolariserTurnsWithTheCameraAndAbsorbsAlongOneAxis) {
   const glm::dvec3 oblique = rays.Direction(190.0, 5.0);
   EXPECT_NEAR(glm::dot(*rays.PassedBy(oblique), oblique), 0.0, kDirectionTolerance);
   EXPECT_NEAR(glm::dot(*rays.PassedBy(oblique), absorbed), 0.0, kDirectionTolerance);
-  const PictureAxes axes = rays.AxesAt(oblique);
+  const ViewAxes axes = rays.AxesAt(oblique);
   EXPECT_NEAR(glm::dot(axes.up, oblique), 0.0, kDirectionTolerance);
   ExpectDirection(glm::cross(oblique, axes.up), axes.right);
 }

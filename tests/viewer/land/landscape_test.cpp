@@ -34,17 +34,15 @@ struct LookOut {
   glm::dvec2 shift{0.0};  // of a pixel's ray, in half widths and heights
 
   [[nodiscard]] LandView View() const {
-    const glm::dvec3 forward{std::sin(heading_rad) * std::cos(pitch_rad),
-                             std::cos(heading_rad) * std::cos(pitch_rad), std::sin(pitch_rad)};
-    const glm::dvec3 right{std::cos(heading_rad), -std::sin(heading_rad), 0.0};
+    const ViewAxes unit = AxesFromAngles(heading_rad, pitch_rad, 0.0);
     const double wide = std::tan(0.5 * fov_rad);
-    return {wide * right, wide * kHeight / kWidth * glm::cross(right, forward), forward};
+    return {{wide * unit.right, wide * kHeight / kWidth * unit.up, unit.forward}};
   }
   /// Returns the ray of a pixel, with any length; row 0 is at the top.
   [[nodiscard]] glm::dvec3 Ray(int x, int y) const {
-    const LandView view = View();
-    return view.forward + (2.0 * (x + 0.5) / kWidth - 1.0 + shift.x) * view.right +
-           (1.0 - 2.0 * (y + 0.5) / kHeight + shift.y) * view.up;
+    const ViewAxes axes = View().axes;
+    return axes.forward + (2.0 * (x + 0.5) / kWidth - 1.0 + shift.x) * axes.right +
+           (1.0 - 2.0 * (y + 0.5) / kHeight + shift.y) * axes.up;
   }
 };
 
@@ -73,12 +71,12 @@ class LandscapePictures : public HeadlessLand {
   // Draws what the last Update or WaitUntilReady chose.
   [[nodiscard]] std::vector<glm::vec4> Draw(Landscape& land, const LookOut& eye) const {
     constexpr GLuint kView = 1;
-    const LandView view = eye.View();
+    const ViewAxes axes = eye.View().axes;
     const auto padded = [](const glm::dvec3& v) { return glm::vec4(glm::vec3(v), 0.0F); };
     ViewBlock block{};
-    block.view_right = padded(view.right);
-    block.view_up = padded(view.up);
-    block.view_forward = padded(view.forward);
+    block.view_right = padded(axes.right);
+    block.view_up = padded(axes.up);
+    block.view_forward = padded(axes.forward);
     block.eye = {1e-3 * eye.place.height_m, eye.shift.x, eye.shift.y,
                  1e-3 * OsculatingRadius(kWgs84, eye.place.latitude_rad())};
     block.bend.x = block.eye.w;  // straight rays

@@ -101,7 +101,7 @@ TEST(StarPoints, ThoseTooFaintBehindTheEyeOrBehindTheMoonAreLeftOut) {
 // Tiles at the corners are seen obliquely.
 TEST(StarPoints, AViewAndItsTilesHaveAllStarsBetweenTheirSides) {
   const PaintedView whole = ViewOf(SkyScene(), 320, 180);
-  const LandView axes = LandViewOf(whole);
+  const ViewAxes axes = AxesOf(whole);
   std::vector<StarLight> stars;
   int seen = 0;
   for (int elevation_deg = -89; elevation_deg < 90; ++elevation_deg) {

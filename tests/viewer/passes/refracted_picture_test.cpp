@@ -240,7 +240,7 @@ PaintedView ViewFrom(double height_m, double pitch_deg, double roll_deg) {
 
 /// One over the highest row with a ray under the horizon, by asking 9 places of each pixel.
 int RowsByRays(const PaintedView& view) {
-  const LandView axes = LandViewOf(view);
+  const ViewAxes axes = AxesOf(view);
   const double horizon = shared::HorizonCosine(1e-3 * view.eye.place.height_m, kRadius_km);
   int rows = 0;
   for (int y = 0; y < 3 * view.height; ++y) {
