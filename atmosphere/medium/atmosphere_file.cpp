@@ -212,7 +212,7 @@ class AtmosphereFile {
     const std::optional<std::string> name = mie_->Text("phase");
     RefuseKeysOfOtherPhases(name.value_or(""));
     if (name == kFog) {
-      phases = {FogOfFile()};
+      phases = {DropletsOfFile()};
     } else if (name == kTablePhase) {
       phases = TableOfFile(medium.wavelengths_nm);
     } else if (name || (mie_->Has("g") && phases.front().kind == PhaseKind::kTable)) {
@@ -253,10 +253,10 @@ class AtmosphereFile {
     for (const std::string& key : kTableKeys) refuse(key, kTablePhase);
   }
 
-  PhaseFunction FogOfFile() const {
+  PhaseFunction DropletsOfFile() const {
     const auto diameter_um = mie_->Number("droplet_diameter_um");
     if (!diameter_um) mie_->Fail("phase", "mie.phase is \"fog\": give mie.droplet_diameter_um too");
-    return FogPhase(*diameter_um);
+    return DropletPhase(*diameter_um);
   }
 
   // Reads phase tables from a separate file, or from lists in this file: one table for all

@@ -77,14 +77,14 @@ double SampleCosine(const PhaseFunction& phase, double u) {
   return std::clamp(FormOf(phase.kind).sample(phase, u), -1.0, 1.0);
 }
 
-PhaseFunction FogPhase(double droplet_diameter_um, const std::string& key) {
+PhaseFunction DropletPhase(double droplet_diameter_um, const std::string& key) {
   const double d =
       RequireInRange(droplet_diameter_um, kSmallestDroplet_um, kLargestDroplet_um, key);
   return {.kind = PhaseKind::kHenyeyGreensteinDraine,
-          .g = shared::FogForwardG(d),
-          .g_back = shared::FogDraineG(d),
-          .back_weight = shared::FogDraineWeight(d),
-          .alpha = shared::FogDraineAlpha(d)};
+          .g = shared::DropletForwardG(d),
+          .g_back = shared::DropletDraineG(d),
+          .back_weight = shared::DropletDraineWeight(d),
+          .alpha = shared::DropletDraineAlpha(d)};
 }
 
 }  // namespace alpenglow::atmosphere

@@ -12,7 +12,7 @@
 //                                                       Blasi, Le Saec, Schlick (1993); |g| < 0.938
 //   Draine             Henyey-Greenstein times (1 + a c^2) / (1 + a (1 + 2 g^2)/3);
 //                      Draine (2003)
-//   Fog                Henyey-Greenstein and Draine, mixed; parameters from the droplets' diameter:
+//   Droplets           Henyey-Greenstein and Draine, mixed; parameters from the droplets' diameter:
 //                      Jendersie, d'Eon (2023), "An Approximate Mie Scattering Function for Fog and
 //                      Cloud Rendering", SIGGRAPH talks
 //
@@ -93,33 +93,33 @@ SHARED Number PhaseHenyeyGreensteinDraine(Number cos_scattering, Number g, Numbe
 
 // Fits of Jendersie and d'Eon to Lorenz-Mie theory for droplets of 1.5 to 5 and of 5 to 50
 // micrometres. @param d  diameter of the droplets [um].
-SHARED Number FogForwardG(Number d) {
+SHARED Number DropletForwardG(Number d) {
   return select(d < Number(5.0), Number(0.0604931) * log(log(d)) + Number(0.940256),
                 exp(Number(-0.0990567) / (d - Number(1.67154))));
 }
 
-SHARED Number FogDraineG(Number d) {
+SHARED Number DropletDraineG(Number d) {
   Number l = log(d);
   return select(d < Number(5.0),
                 Number(0.500411) - Number(0.081287) / (tan(l) - Number(2.0) * l + Number(1.27551)),
                 exp(Number(-2.20679) / (d + Number(3.91029)) - Number(0.428934)));
 }
 
-SHARED Number FogDraineAlpha(Number d) {
+SHARED Number DropletDraineAlpha(Number d) {
   return select(d < Number(5.0), Number(7.30354) * log(d) + Number(6.31675),
                 exp(Number(3.62489) - Number(8.29288) / (d + Number(5.52825))));
 }
 
-SHARED Number FogDraineWeight(Number d) {
+SHARED Number DropletDraineWeight(Number d) {
   Number l = log(d);
   Number wave = cos(Number(5.68947) * (log(l) - Number(0.0292149)));
   return select(d < Number(5.0), Number(0.026914) * (l - wave) + Number(0.376475),
                 exp(Number(-0.599085) / (d - Number(0.641583)) - Number(0.665888)));
 }
 
-SHARED Number PhaseFog(Number cos_scattering, Number d) {
-  return PhaseHenyeyGreensteinDraine(cos_scattering, FogForwardG(d), FogDraineG(d),
-                                     FogDraineWeight(d), FogDraineAlpha(d));
+SHARED Number PhaseDroplets(Number cos_scattering, Number d) {
+  return PhaseHenyeyGreensteinDraine(cos_scattering, DropletForwardG(d), DropletDraineG(d),
+                                     DropletDraineWeight(d), DropletDraineAlpha(d));
 }
 
 // Maps the scattering angle to the coordinate of a tabulated phase function, in [0, 1] from forward

@@ -108,19 +108,19 @@ struct PhaseFunction {
 /// @param u uniform in [0, 1).
 [[nodiscard]] double SampleCosine(const PhaseFunction& phase, double u);
 
-/// Range of droplet diameters [um] that FogPhase accepts.
+/// Range of droplet diameters [um] that DropletPhase accepts.
 inline constexpr double kSmallestDroplet_um = 1.5;
 inline constexpr double kLargestDroplet_um = 50.0;
 
-/// Returns the phase function of fog with droplets of this diameter: Henyey-Greenstein for the
-/// forward peak and Draine's for the rest, fitted to Lorenz-Mie theory by Jendersie and d'Eon
+/// Returns the phase function of water droplets of this diameter: Henyey-Greenstein for the forward
+/// peak and Draine's for the rest, fitted to Lorenz-Mie theory by Jendersie and d'Eon
 /// (2023). At 550 nm less than 0.16 of the light is scattered into other directions than in
 /// Lorenz-Mie theory, and less than 0.11 for diameters up to 5 um. For a Henyey-Greenstein lobe
 /// with the same mean cosine this fraction is over 0.2 from 3 um on. The phase function is the same
 /// at all wavelengths.
 /// @param droplet_diameter_um  in [1.5, 50]; throws InputError naming `key` beyond.
-[[nodiscard]] PhaseFunction FogPhase(double droplet_diameter_um,
-                                     const std::string& key = "droplet_diameter_um");
+[[nodiscard]] PhaseFunction DropletPhase(double droplet_diameter_um,
+                                         const std::string& key = "droplet_diameter_um");
 
 /// Returns the kind named "henyey-greenstein" and so on, as in atmosphere.toml; throws InputError
 /// for an unknown name.

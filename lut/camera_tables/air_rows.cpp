@@ -136,7 +136,7 @@ glm::vec4 Absorbed(const glm::vec4& tau) {
 /// One row of rays under a sun in the zenith, so that no part of them is in the planet's shadow.
 class RowOfRays {
  public:
-  RowOfRays(const SingleScattering<float>& air, const AirEye& eye, const AirMap& map,
+  RowOfRays(const SingleScattering<float>& air, const EyeUnderLight& eye, const AirMap& map,
             const Reach& reach, PieceNodes nodes)
       : air_(air), nodes_(std::move(nodes)), samples_(SamplesOf(eye, map, reach)) {}
 
@@ -173,7 +173,7 @@ class RowOfRays {
 
  private:
   // kBetweenSamples avoids cancellation, but the samples must be close together.
-  [[nodiscard]] RaySamples<float> SamplesOf(const AirEye& eye, const AirMap& map,
+  [[nodiscard]] RaySamples<float> SamplesOf(const EyeUnderLight& eye, const AirMap& map,
                                             const Reach& reach) const {
     const double mu = reach.row.mu;
     return air_.SampleAt(
@@ -220,7 +220,7 @@ class SunlightOfRow {
 
   /// @param nu_seen  cosine between the ray and the direction in which the sun is seen.
   [[nodiscard]] std::vector<SunlightTo> Along(double nu, double nu_seen) const {
-    const ViewRay ray{eye_.altitude_m, reach_.row.mu, eye_.mu_s, nu};
+    const ViewRay ray{eye_.altitude_m, reach_.row.mu, eye_.mu_s(), nu};
     const RayExtent extent{reach_.begin_m, reach_.end_m, RayEnd::kLength};
     const ShadowSpan shadow = PlanetShadow(ray, extent, air_.medium().planet_radius_m);
     if (shadow.dark_begin_m == shadow.dark_end_m)
@@ -242,7 +242,7 @@ class SunlightOfRow {
 
   // Returns the columns for samples that were taken with another sun direction.
   [[nodiscard]] SunColumns SunOf(const RaySamples<float>& samples, double nu) const {
-    const auto eye = static_cast<float>((map_.radius + map_.altitude) * eye_.mu_s);
+    const auto eye = static_cast<float>((map_.radius + map_.altitude) * eye_.mu_s());
     const auto radius = static_cast<float>(map_.radius);
     const auto begin = static_cast<float>(reach_.begin_m / kMetresPerKilometre);
     std::vector<float> altitude_m(samples.count), mu_s(samples.count);
@@ -351,7 +351,7 @@ class SunlightOfRow {
   const SingleScattering<float>& air_;
   const MultipleScattering& multiple_scattering_;
   const AirPhases& phases_;
-  const AirEye& eye_;
+  const EyeUnderLight& eye_;
   const AirMap& map_;
   const Reach& reach_;
   const RowOfRays& rays_;
@@ -391,7 +391,7 @@ class WayBuilder {
     const double mu_s_seen = std::cos(tables_.eye.zenith_angle_seen_rad());
     std::vector<double> nus;
     for (const double azimuth : azimuths_)
-      nus.push_back(SunCosineOf(reach.row, tables_.eye.mu_s, azimuth));
+      nus.push_back(SunCosineOf(reach.row, tables_.eye.mu_s(), azimuth));
     const SunlightOfRow sunlight(air_, multiple_scattering_, once_, tables_, reach, rays);
     for (std::size_t x = 0; x < nus.size(); ++x) {
       const double nu_seen = SunCosineOf(reach.row, mu_s_seen, azimuths_[x]);
@@ -414,7 +414,7 @@ class WayBuilder {
   // Adds the light of the moments to the light in the table.
   void AddMoments(int y, const Reach& reach, const RowOfRays& rays,
                   const std::vector<glm::vec4>& absorbed, const std::vector<float>& nus) {
-    const ViewRay ray{tables_.eye.altitude_m, reach.row.mu, tables_.eye.mu_s, 0.0};
+    const ViewRay ray{tables_.eye.altitude_m, reach.row.mu, tables_.eye.mu_s(), 0.0};
     const std::size_t bands = air_.bands();
     std::vector<glm::vec4> sum(nus.size(), glm::vec4(0.0F));
     for (std::size_t j = 0; j < absorbed.size(); ++j) {
@@ -432,7 +432,7 @@ class WayBuilder {
     for (std::size_t j = 0; j < reach.distance_m.size(); ++j) {
       const double source_km = 0.5 * (reach.near_m + reach.distance_m[j]) / kMetresPerKilometre;
       for (std::size_t x = 0; x < nus.size(); ++x) {
-        const float twilight = TwilightAt(tables_.map, tables_.eye.mu_s, nus[x], source_km);
+        const float twilight = TwilightAt(tables_.map, tables_.eye.mu_s(), nus[x], source_km);
         Texel(tables_.single, x, y, j) /= twilight;
         Texel(tables_.multiple_scattering, x, y, j) /= twilight;
       }

@@ -27,9 +27,8 @@ double DipToAltitude(double z, double h, double radius) {
 
 }  // namespace
 
-AirMap::AirMap(const Medium& medium, double altitude_m, double ceiling_m, double twilight_fall_)
+AirMap::AirMap(const Medium& medium, double altitude_m, double twilight_fall_)
     : altitude(std::max(altitude_m, 0.0) / kMetresPerKilometre),
-      ceiling(ceiling_m / kMetresPerKilometre),
       top(medium.atmosphere_height_m / kMetresPerKilometre),
       radius(medium.planet_radius_m / kMetresPerKilometre),
       horizon_dip(DipToAltitude(0.0, altitude, radius)),
@@ -55,14 +54,14 @@ constexpr int kSunCosines = 256, kSunAltitudes = 64;
 // all three are equal.
 std::array<glm::vec4, 3> SkyMix(const SingleScattering<float>& air,
                                 const MultipleScattering& multiple_scattering, const SkyView& view,
-                                const AirMap& map, const AirEye& eye) {
+                                const AirMap& map, const EyeUnderLight& eye) {
   const double sun = eye.zenith_angle_seen_rad();
   const double horizon = view.map().horizon_zenith_angle_rad();
   const double margin = std::min(0.02, 0.05 * map.sky_range);
   const double zenith = std::clamp(
       sun, horizon - map.sky_range + (map.altitude > map.top ? margin : 0.0), horizon - margin);
-  const ViewRay ray{eye.altitude_m, std::cos(zenith), eye.mu_s,
-                    std::cos(zenith - sun - eye.lower_for_air_rad)};
+  const ViewRay ray{eye.altitude_m, std::cos(zenith), eye.mu_s(),
+                    std::cos(zenith - std::acos(std::clamp(eye.mu_s(), -1.0, 1.0)))};
   const RaySamples<float> samples = air.Sample(ray, {.dark_samples = true});
   const ScatteredOnce<float> once = air.Scatter(samples);
   const glm::vec4 all = Vec4Of(view.Radiance(zenith, 0.0));
@@ -83,8 +82,8 @@ double CosineOfPhaseNode(int node) {
 
 AirTexels PhaseAround(const SingleScattering<float>& air,
                       const MultipleScattering& multiple_scattering, const AirTexels& aerosol,
-                      const AirEye& eye) {
-  const float column_km = GlowColumn_km(air, eye.altitude_m, eye.mu_s);
+                      const EyeUnderLight& eye) {
+  const float column_km = GlowColumn_km(air, eye.altitude_m, eye.mu_s());
   AirTexels phase = aerosol;
   for (int k = 0; k < phase.width; ++k) {
     const glm::vec4 once = phase.At(k, 0);
@@ -95,14 +94,14 @@ AirTexels PhaseAround(const SingleScattering<float>& air,
   return phase;
 }
 
-float TwilightAtFoot(const AirMap& map, const AirEye& eye, const AirRow& row, double nu) {
+float TwilightAtFoot(const AirMap& map, const EyeUnderLight& eye, const AirRow& row, double nu) {
   return TwilightAt(
-      map, eye.mu_s, nu,
+      map, eye.mu_s(), nu,
       shared::AirFoot<double>(map.altitude, row.mu, row.ground ? 1.0 : 0.0, map.radius));
 }
 
 AirTexels SkyTexels(const SkyView& view, const AirMap& map, const AirPhases& phases,
-                    const AirEye& eye, const std::array<glm::vec4, 3>& mix,
+                    const EyeUnderLight& eye, const std::array<glm::vec4, 3>& mix,
                     const AirTablesSize& size) {
   const std::vector<double> azimuths = AzimuthsOf(size.sky_columns);
   const SkyAzimuths prepared(view, azimuths);
@@ -118,7 +117,7 @@ AirTexels SkyTexels(const SkyView& view, const AirMap& map, const AirPhases& pha
       const double nu = SunCosineOf(row, mu_s_seen, azimuth);
       texels.At(x, y) =
           Quotient(glm::vec4{light[0], light[1], light[2], light[3]} /
-                       TwilightAtFoot(map, eye, row, SunCosineOf(row, eye.mu_s, azimuth)),
+                       TwilightAtFoot(map, eye, row, SunCosineOf(row, eye.mu_s(), azimuth)),
                    AirPhases::OfMolecules(nu) * mix[0] + phases.OfAerosol(nu) * mix[1] + mix[2]);
     }
     ++y;
@@ -127,16 +126,16 @@ AirTexels SkyTexels(const SkyView& view, const AirMap& map, const AirPhases& pha
 }
 
 SkyView ViewOf(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-               const AirEye& eye, double fineness) {
-  SkyViewSize size = SkyViewSizeFor(air.medium(), eye.altitude_m, eye.mu_s);
+               const EyeUnderLight& eye, double fineness) {
+  SkyViewSize size = SkyViewSizeFor(air.medium(), eye.altitude_m, eye.mu_s());
   for (int* nodes : {&size.sky_rows, &size.ground_rows, &size.azimuths})
     *nodes = static_cast<int>(std::lround(fineness * *nodes));
-  return SkyView(air, multiple_scattering, eye.altitude_m, eye.mu_s, size)
+  return SkyView(air, multiple_scattering, eye.altitude_m, eye.mu_s(), size)
       .WithSunSeenAt(eye.zenith_angle_seen_rad());
 }
 
-AirTexels ThroughTexels(const SingleScattering<float>& air, const AirMap& map, const AirEye& eye,
-                        const AirTablesSize& size) {
+AirTexels ThroughTexels(const SingleScattering<float>& air, const AirMap& map,
+                        const EyeUnderLight& eye, const AirTablesSize& size) {
   AirTexels texels(size.through_rows + size.through_ground_rows, 1);
   int x = 0;
   for (const AirRow& row : RowsOf(map, size.through_rows, map.sky_range, size.through_ground_rows))
@@ -164,13 +163,9 @@ std::array<glm::vec4, 2> SingleMix(const SingleScattering<float>& air, const Air
 
 }  // namespace
 
-double AirEye::zenith_angle_seen_rad() const {
-  return std::acos(std::clamp(mu_s, -1.0, 1.0)) - lower_for_air_rad;
-}
-
 // Over the point of the eye's horizon the lowest beam has the height R (1 / cos(angle) - 1), where
 // `angle` is the depth of the sun below that horizon.
-bool HasSetInView(const Medium& medium, const AirMap& map, const AirEye& eye) {
+bool HasSetInView(const Medium& medium, const AirMap& map, const EyeUnderLight& eye) {
   constexpr double kNoShadows_rad = 3.2 * kRadiansPerDegree, kScaleHeights = 3.0;
   const double lower_rad = eye.zenith_angle_seen_rad() - 0.5 * kPi;
   if (lower_rad < kNoShadows_rad) return false;
@@ -218,13 +213,13 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
   return high;
 }
 
-AirTables MakeAirTables(const SolvedAir& solved, const MediumTables& medium, const AirEye& eye,
-                        const AirTablesSize& size) {
+AirTables MakeAirTables(const SolvedAir& solved, const MediumTables& medium,
+                        const EyeUnderLight& eye, const AirTablesSize& size) {
   RequireFourBands(solved.medium());
   const SingleScattering<float>& air = solved.single_scattering();
   const MultipleScattering& multiple_scattering = solved.multiple_scattering();
   const SkyView view = ViewOf(air, multiple_scattering, eye, size.sky_fineness);
-  const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m,
+  const AirMap map(air.medium(), eye.altitude_m,
                    static_cast<double>(multiple_scattering.grid().twilight_fall));
   AirTexels phase = PhaseAround(air, multiple_scattering, medium.phase, eye);
   const AirPhases phases(phase);

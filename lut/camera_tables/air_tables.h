@@ -37,6 +37,7 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/shell.h"
+#include "lut/camera_tables/eye_under_light.h"
 #include "lut/layer.h"
 #include "lut/multiple_scattering/solved_air.h"
 
@@ -52,10 +53,10 @@ namespace alpenglow::lut {
 
 /// Axes of the tables of one eye. Angles are in radians, lengths in km.
 struct AirMap {
-  /// @param ceiling_m  upper bound of the height of land.
-  AirMap(const Medium& medium, double altitude_m, double ceiling_m, double twilight_fall_);
+  AirMap(const Medium& medium, double altitude_m, double twilight_fall_);
 
-  double altitude, ceiling, top, radius;
+  double altitude, top, radius;
+  double ceiling = 9.0;       // upper bound of the height of land
   double horizon_dip;         // angle of the horizon below the horizontal
   double sky_range;           // from the horizon up to the zenith or to the upper edge of the air
   double air_sky_range;       // up to the zenith or to where rays miss all land
@@ -111,27 +112,15 @@ struct AirTexels {
   }
 };
 
-/// Eye and sun of the tables. The tables begin at the azimuth of the sun, so that the elevations of
-/// its LightDirection suffice.
-struct AirEye {
-  double altitude_m = 0.0;         // values below 0 are treated as 0
-  double mu_s = 1.0;               // zenith cosine at the eye of the sun that illuminates the air
-  double ceiling_m = 9000.0;       // upper bound of the height of land
-  double lower_for_air_rad = 0.0;  // elevation of the sun as seen minus that of this sun
-
-  /// Returns the zenith angle at which the sun is seen. Aureoles are centred on it.
-  [[nodiscard]] double zenith_angle_seen_rad() const;
-};
-
 /// Returns whether the sun has set so far that neither its aureole nor shadows of terrain in the air are
 /// seen: it is seen lower than -3.2 degrees (SunShadowMapOf has shadows down to -3), and at the eye's
 /// horizon its beams pass higher than three scale heights of the aerosol.
-[[nodiscard]] bool HasSetInView(const Medium& medium, const AirMap& map, const AirEye& eye);
+[[nodiscard]] bool HasSetInView(const Medium& medium, const AirMap& map, const EyeUnderLight& eye);
 
-/// Tables for one eye and sun. They are plain data and never modified after their construction.
+/// Tables for one eye and one light. They are plain data and never modified after their construction.
 struct AirTables {
   AirTablesSize size;
-  AirEye eye;
+  EyeUnderLight eye;
   AirMap map;
   bool has_set;                         // HasSetInView
   std::array<glm::vec4, 3> sky_mix;     // m_R, m_M, m_0
@@ -169,7 +158,7 @@ struct MediumTables {
 /// Computes the tables on the calling thread alone. `air` and `medium` must belong to one medium;
 /// no reference to them is kept. Throws InputError for a medium of more than four bands.
 [[nodiscard]] AirTables MakeAirTables(const SolvedAir& air, const MediumTables& medium,
-                                      const AirEye& eye, const AirTablesSize& size);
+                                      const EyeUnderLight& eye, const AirTablesSize& size);
 
 /// A solved medium with its tables for the GPU. It is immutable and can be shared between threads.
 struct TabulatedAir {

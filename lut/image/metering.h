@@ -13,8 +13,8 @@
 // luminance, not of its logarithm: the logarithmic mean would fall faster than the sky where land
 // grows dark, so that a dusk would get brighter on the display. In addition, the luminance exceeded
 // only by the brightest twentieth is never printed brighter than white paper beside a grey card,
-// 90 % beside 18 %. This keeps a sunlit planet below a black sky, snow behind a dark wood, and fog
-// around lamps from being overexposed.
+// 90 % beside 18 %. This keeps a sunlit planet below a black sky, snow behind a dark wood, and the
+// glow around lamps from being overexposed.
 #pragma once
 
 #include <array>

@@ -93,8 +93,8 @@ class MultipleScattering {
   /// Solves for the medium. The result does not depend on the number of threads. Very thick air
   /// may need more than max_orders; converged() is then false. A warning on standard error names
   /// each such air once, here and where a stored solution is restored. Scalar light on the ground
-  /// under molecules is within 3 % of paths at optical depth 20 and 6 % at 40, and under fog with a
-  /// lobe of g = 0.85 within 2 % at 15.65.
+  /// under molecules is within 3 % of paths at optical depth 20 and 6 % at 40, and under aerosol with
+  /// a lobe of g = 0.85 within 2 % at 15.65.
   explicit MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options = {});
 
   /// Restores a stored solution: values, orders and converged as returned by the accessors. Throws

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A medium with its solution: everything that lights ground, fog, volumes and air in it by a
+// A medium with its solution: everything that lights ground, other media and air in it by a
 // distant source. Sun and moon have the same solution, because all values are per unit irradiance
 // above the air.
 //

@@ -41,7 +41,7 @@ std::string FileKey(const std::string& text) {
   return key;
 }
 
-/// Returns "earth", "range, earth" or, if there is only a scene, "fog".
+/// Returns "earth", "range, earth" or, if there is only a scene, "range".
 std::string PlaceName(const ReportTopic& topic) {
   if (topic.scene.empty()) return topic.medium.name;
   return topic.medium.name.empty() ? topic.scene : topic.scene + ", " + topic.medium.name;

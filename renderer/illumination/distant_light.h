@@ -9,7 +9,7 @@
 //   FrameLight   one of them with its shadows and its light in media, for one picture
 //                (frame_context.h)
 //
-// Tables, terrain and fog serve each of them alike, because the radiance of air lit from a direction
+// Tables, terrain and media serve each of them alike, because the radiance of air lit from a direction
 // is linear in the irradiance.
 #pragma once
 

@@ -132,10 +132,6 @@ float LayerLight::SkyLeft(double altitude_m) const {
   return static_cast<float>(std::exp(-peak_scale_ * DepthAbove(altitude_m) / kSkyCosine));
 }
 
-float LayerLight::BeamLeft(double slant_depth) const {
-  return static_cast<float>(std::exp(-peak_scale_ * slant_depth));
-}
-
 BandLight LayerLight::OnSurface(double altitude_m, double cos_up) const {
   const NodePosition place = PlaceOf(altitude_m);
   const auto tilt = static_cast<float>(2.0 * kPi / 3.0 * cos_up);

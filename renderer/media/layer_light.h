@@ -57,10 +57,12 @@ class LayerLight {
   [[nodiscard]] Scattered At(const Look& look, double altitude_m, const BandLight& sun,
                              const BandLight& lit, double slant_depth) const;
 
-  /// Return the transmittance of skylight from above to an altitude, and of a beam over a slant
-  /// depth; both include the light in the forward peak.
+  /// Returns the factor on optical depths with which light in the forward peak counts as not
+  /// scattered.
+  [[nodiscard]] double peak_scale() const { return peak_scale_; }
+  /// Returns the transmittance of skylight from above to an altitude, with the light in the forward
+  /// peak.
   [[nodiscard]] float SkyLeft(double altitude_m) const;
-  [[nodiscard]] float BeamLeft(double slant_depth) const;
 
   /// Returns the irradiance of a surface by the layer's own light [1].
   /// @param cos_up  of its normal's zenith angle.
@@ -88,9 +90,9 @@ class LayerLight {
   std::vector<double> chi_;
   PhaseFunction broad_;
   double extinction_per_m_, depth_;
-  double peak_scale_;  // scales optical depths to exclude the forward peak
-  SkyMoments sky_;     // without the ground
-  BandLight ground_;   // radiance of the ground under a clear sky
+  double peak_scale_;
+  SkyMoments sky_;    // without the ground
+  BandLight ground_;  // radiance of the ground under a clear sky
   Glow of_sun_, of_sky_;
 };
 

@@ -20,14 +20,14 @@ class LitLayer::OnOneRay final : public MediumOnRay {
       : lit_(lit), look_(lit.light_.LookAlong(direction)) {}
 
   void AddSource(const LightOnPoint& light, double density, BandLight& sum) const override {
-    const LayerLight::Scattered scattered =
-        lit_.light_.At(look_, light.altitude_m, light.sun, light.lit, lit_.DepthToSun(light.point));
+    const BandLight lit = light.LitThrough(light.depth);
+    const LayerLight::Scattered scattered = lit_.light_.At(
+        look_, light.altitude_m, lit * light.in_air, lit, lit_.DepthToSun(light.point));
     const auto per_m = static_cast<float>(density * lit_.layer_.optics().scattering_per_m[0]);
     const BandLight& irradiance = lit_.sources_.light.irradiance;
     for (std::size_t band = 0; band < sum.count; ++band) {
-      sum[band] +=
-          per_m * irradiance[band] *
-          (light.sun_left * scattered.of_sun[band] + light.sky_left * scattered.of_sky[band]);
+      sum[band] += per_m * irradiance[band] *
+                   (scattered.of_sun[band] + light.sky_left * scattered.of_sky[band]);
     }
   }
 
@@ -40,8 +40,11 @@ std::unique_ptr<const MediumOnRay> LitLayer::OnRay(const glm::dvec3& direction) 
   return std::make_unique<OnOneRay>(*this, direction);
 }
 
-float LitLayer::SunLeft(const glm::dvec3& point) const {
-  return light_.BeamLeft(DepthToSun(point));
+// The width of the disk does not matter for a layer.
+void LitLayer::AddDepthToLight(const glm::dvec3& point, const glm::dvec3& /*to_disk*/,
+                               Bands<double>& depth) const {
+  const double of_layer = light_.peak_scale() * DepthToSun(point);
+  for (std::size_t band = 0; band < depth.count; ++band) depth[band] += of_layer;
 }
 
 float LitLayer::SkyLeft(double altitude_m) const { return light_.SkyLeft(altitude_m); }

@@ -18,7 +18,8 @@ class LitLayer final : public LitMedium {
 
   [[nodiscard]] std::unique_ptr<const MediumOnRay> OnRay(
       const glm::dvec3& direction) const override;
-  [[nodiscard]] float SunLeft(const glm::dvec3& point) const override;
+  void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
+                       Bands<double>& depth) const override;
   [[nodiscard]] float SkyLeft(double altitude_m) const override;
   void ChangeSky(double altitude_m, double cos_up, SkyThroughMedia& sky) const override;
 

@@ -36,10 +36,13 @@ struct MediaSources {
 struct LightOnPoint {
   const glm::dvec3& point;
   double altitude_m;
-  const BandLight& sun;  // transmittance of air, terrain and bodies for sunlight
-  const BandLight& lit;  // transmittance of terrain and bodies alone
-  float sun_left;        // transmittance of the other layers for sunlight
-  float sky_left;        // and for skylight
+  const BandLight& in_air;     // transmittance of the air for sunlight
+  float past_terrain;          // fraction of the sunlight that terrain does not stop
+  const Bands<double>& depth;  // optical depth of the other media towards the sun
+  float sky_left;              // transmittance of the other layers for skylight
+
+  /// Returns the transmittance of terrain and of an optical depth for sunlight, without the air.
+  [[nodiscard]] BandLight LitThrough(const Bands<double>& all_media) const;
 };
 
 /// Light of a medium along one ray.
@@ -76,11 +79,12 @@ class LitMedium {
   virtual void AddCuts(const glm::dvec3& /*origin*/, const glm::dvec3& /*direction*/,
                        std::vector<double>& /*cuts_m*/) const {}
 
-  /// Adds the optical depth of a body between a point and the sun.
-  virtual void AddDepthToSun(const glm::dvec3& /*point*/, Bands<double>& /*depth*/) const {}
-  /// Returns the transmittance of a layer for sunlight at a point. It includes the light in the
-  /// forward peak.
-  [[nodiscard]] virtual float SunLeft(const glm::dvec3& /*point*/) const { return 1.0F; }
+  /// Adds the optical depth of the medium between a point and the light: the shadow that it casts on
+  /// the ground, into the air and on other media. Light in a forward peak may count as not
+  /// scattered.
+  /// @param to_disk  towards the light: the centre of its disk, or a point of it for soft shadows.
+  virtual void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
+                               Bands<double>& depth) const = 0;
   /// Returns the transmittance of a layer for skylight from above to an altitude. It includes the
   /// light in the forward peak.
   [[nodiscard]] virtual float SkyLeft(double /*altitude_m*/) const { return 1.0F; }

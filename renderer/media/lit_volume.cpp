@@ -192,13 +192,14 @@ std::vector<VolumeGrid> LitVolume::SkyLeft(const SkyMoments& sky) const {
   });
 }
 
-void LitVolume::AddDepthToSun(const glm::dvec3& point, Bands<double>& depth) const {
-  if (sun_column_) {
+void LitVolume::AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
+                                Bands<double>& depth) const {
+  if (sun_column_ && to_disk == sources_.light.direction.seen) {
     const glm::dvec3 off = volume_.UnitFromFrame(point) - 0.5;
     if (std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) <= 0.5)
       return AddDepth(volume_, sun_column_->At(off + 0.5), depth);
   }
-  AddDepth(volume_, volume_.Column(point, sources_.light.direction.seen, kEndless), depth);
+  AddDepth(volume_, volume_.Column(point, to_disk, kEndless), depth);
 }
 
 void LitVolume::AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -241,12 +242,15 @@ class LitVolume::OnOneRay final : public MediumOnRay {
         sky_(lit.sky_.Towards(direction, lit.chi_)) {}
 
   void AddSource(const LightOnPoint& light, double density, BandLight& sum) const override {
+    Bands<double> depth = light.depth;
+    lit_.AddDepthToLight(light.point, lit_.sources_.light.direction.seen, depth);
+    const BandLight sun = light.LitThrough(depth) * light.in_air;
     const BandLight sky = lit_.sky_.At(sky_, light.altitude_m);
     const glm::dvec3 unit = lit_.volume_.UnitFromFrame(light.point);
     const BandLight& irradiance = lit_.sources_.light.irradiance;
     for (std::size_t band = 0; band < sum.count; ++band) {
       const float arriving =
-          phase_ * light.sun_left * light.sun[band] +
+          phase_ * sun[band] +
           light.sky_left * sky[band] * static_cast<float>(lit_.sky_left_[band].At(unit));
       sum[band] +=
           static_cast<float>(density) *

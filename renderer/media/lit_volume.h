@@ -34,7 +34,9 @@ class LitVolume final : public LitMedium {
   /// A lamp's light varies on the scale of its distance from the ray, so panels end there.
   void AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
                std::vector<double>& cuts_m) const override;
-  void AddDepthToSun(const glm::dvec3& point, Bands<double>& depth) const override;
+  /// Inside a gridded volume, the depth towards the centre of the disk is that of sun_column_.
+  void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
+                       Bands<double>& depth) const override;
 
  private:
   class OnOneRay;

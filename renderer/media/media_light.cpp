@@ -96,49 +96,45 @@ class Sources {
   /// @param sunlit  stretches that terrain does not shade; null: the whole ray.
   Sources(const MediaSources& sources, const LitMedia& lit, const glm::dvec3& origin,
           const glm::dvec3& direction, const SunlitPath* sunlit)
-      : lit_(lit),
+      : sources_(sources),
+        lit_(lit),
         direction_(direction),
         air_(sources, origin, direction),
-        geometry_(sources.geometry),
         sunlit_(sunlit),
         on_ray_(lit.size()) {}
 
   BandLight operator()(double distance_m, const glm::dvec3& point,
                        std::span<const double> densities) {
     const AirOnRay::Light air = air_.At(distance_m);
-    const BandLight lit = PastTerrainAndBodies(distance_m, point, air.sun.count);
-    const BandLight sun = lit * air.sun;
-    LightOnPoint light{point, geometry_.AltitudeOf(point), sun, lit, 1.0F, 1.0F};
-    BandLight sum(sun.count);
+    const double altitude_m = sources_.geometry.AltitudeOf(point);
+    const float past_terrain =
+        sunlit_ != nullptr ? static_cast<float>(SunlightAt(*sunlit_, distance_m)) : 1.0F;
+    BandLight sum(air.sun.count);
     for (std::size_t m = 0; m < lit_.size(); ++m) {
       if (densities[m] <= 0.0) continue;
-      PutLayersBefore(m, light);
-      MediumAt(m).AddSource(light, densities[m], sum);
+      const Bands<double> depth = DepthOfOthers(m, point);
+      MediumAt(m).AddSource(
+          {point, altitude_m, air.sun, past_terrain, depth, SkyPastOthers(m, altitude_m)},
+          densities[m], sum);
     }
     return air.left * sum;
   }
 
  private:
-  [[nodiscard]] BandLight PastTerrainAndBodies(double distance_m, const glm::dvec3& point,
-                                               std::size_t bands) const {
-    const float past_terrain =
-        sunlit_ != nullptr ? static_cast<float>(SunlightAt(*sunlit_, distance_m)) : 1.0F;
-    Bands<double> depth(bands);
-    for (const auto& medium : lit_) medium->AddDepthToSun(point, depth);
-    BandLight left(bands);
-    for (std::size_t band = 0; band < bands; ++band)
-      left[band] = past_terrain * static_cast<float>(std::exp(-depth[band]));
-    return left;
-  }
-
-  /// Puts the layers other than medium `m` between it and the light.
-  void PutLayersBefore(std::size_t m, LightOnPoint& light) const {
-    light.sun_left = light.sky_left = 1.0F;
+  /// Return what the media other than `m` do to the light of the sun and of the sky.
+  [[nodiscard]] Bands<double> DepthOfOthers(std::size_t m, const glm::dvec3& point) const {
+    Bands<double> depth(sources_.bands());
     for (std::size_t other = 0; other < lit_.size(); ++other) {
-      if (other == m) continue;
-      light.sun_left *= lit_[other]->SunLeft(light.point);
-      light.sky_left *= lit_[other]->SkyLeft(light.altitude_m);
+      if (other != m) lit_[other]->AddDepthToLight(point, sources_.light.direction.seen, depth);
     }
+    return depth;
+  }
+  [[nodiscard]] float SkyPastOthers(std::size_t m, double altitude_m) const {
+    float left = 1.0F;
+    for (std::size_t other = 0; other < lit_.size(); ++other) {
+      if (other != m) left *= lit_[other]->SkyLeft(altitude_m);
+    }
+    return left;
   }
 
   /// Returns a medium on the ray. One that the ray does not meet is never looked at.
@@ -147,10 +143,10 @@ class Sources {
     return *on_ray_[m];
   }
 
+  const MediaSources& sources_;
   const LitMedia& lit_;
   glm::dvec3 direction_;
   AirOnRay air_;
-  const SceneGeometry& geometry_;
   const SunlitPath* sunlit_;
   std::vector<std::unique_ptr<const MediumOnRay>> on_ray_;
 };
@@ -184,20 +180,12 @@ MarchedLight MediaLight::Along(const glm::dvec3& origin, const glm::dvec3& direc
   return MarchMedia(state_->media, origin, direction, length_m, std::ref(sources), tolerance, cuts);
 }
 
-BandLight MediaLight::SunLeft(const glm::dvec3& point, const glm::dvec3& to_sun) const {
+BandLight MediaLight::BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk) const {
   BandLight left(state_->media.bands());
   Bands<double> depth(left.count);
-  float past_layers = 1.0F;
-  for (std::size_t m = 0; m < state_->lit.size(); ++m) {
-    const LocalMedium& medium = *state_->media.all()[m];
-    past_layers *= state_->lit[m]->SunLeft(point);
-    if (medium.IsLayer()) continue;
-    const double column = medium.Column(point, to_sun, kNoEnd);
-    for (std::size_t band = 0; band < depth.count; ++band)
-      depth[band] += column * medium.optics().extinction_per_m[band];
-  }
+  for (const auto& medium : state_->lit) medium->AddDepthToLight(point, to_disk, depth);
   for (std::size_t band = 0; band < left.count; ++band)
-    left[band] = past_layers * static_cast<float>(std::exp(-depth[band]));
+    left[band] = static_cast<float>(std::exp(-depth[band]));
   return left;
 }
 

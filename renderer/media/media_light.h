@@ -40,8 +40,9 @@ class MediaLight {
                                    double length_m, const SunlitPath* sunlit,
                                    double tolerance = kMarchTolerance) const;
 
-  /// Returns the transmittance of media for sunlight that arrives at a point from a direction.
-  [[nodiscard]] BandLight SunLeft(const glm::dvec3& point, const glm::dvec3& to_sun) const;
+  /// Returns the transmittance of all media for sunlight that arrives at a point of the ground or the
+  /// air: their shadow there. @param to_disk  as in LitMedium::AddDepthToLight.
+  [[nodiscard]] BandLight BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk) const;
 
   /// Returns the skylight on a surface.
   /// @param cos_up  between the surface's normal and the vertical.

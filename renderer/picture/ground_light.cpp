@@ -152,7 +152,7 @@ std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const Ground
   const BandLight clear = static_cast<float>(sun.visible_fraction * cosine) *
                           air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   if (from.media == nullptr) return clear;
-  return clear * from.media->SunLeft(hit.point, to_disk);
+  return clear * from.media->BeamLeft(hit.point, to_disk);
 }
 
 SeenGround GroundLight::SeenFrom(const Hit& hit, const glm::dvec3& to_eye,

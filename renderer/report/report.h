@@ -3,7 +3,7 @@
 // one run.
 //
 // Topics, each measured on its own: aerial perspective and transmittance in front of terrain,
-// shafts, one lamp in fog, many lamps, whole pictures. Rows, folders and pages are those of
+// shafts, one lamp in a medium, many lamps, whole pictures. Rows, folders and pages are those of
 // lut/report/report.h; WriteReport writes them.
 #pragma once
 

@@ -12,7 +12,7 @@ namespace alpenglow::renderer {
 /// Measures whole pictures.
 [[nodiscard]] ReportTopic MeasurePictures(const ReportEffort& effort);
 
-/// Returns a runway at night in height fog, seen from 38 m over its approach: `lamps` lamps in two
+/// Returns a runway at night under a layer of droplets, seen from 38 m over its approach: `lamps` lamps in two
 /// rows along it, and the landing lights of an aeroplane when `with_beam`.
 [[nodiscard]] Scene RunwayScene(int lamps, bool with_beam);
 

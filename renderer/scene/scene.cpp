@@ -320,25 +320,27 @@ PhaseFunction DropletPhaseOf(const TomlSection& table) {
     table.Fail("g", fmt::format("{} and {} are both given; give one", table.FullName("g"),
                                 table.FullName("droplet_diameter_um")));
   }
-  if (!g) return FogPhase(droplet.value_or(15.0));
+  if (!g) return DropletPhase(droplet.value_or(15.0));
   PhaseFunction phase;
   phase.kind = PhaseKind::kHenyeyGreenstein;
   phase.g = *g;
   return phase;
 }
 
-std::vector<MediumLayer> LayersOfFog(const TomlTable& document) {
-  const std::optional<TomlSection> table = SectionOf(document, FogFields());
+std::vector<MediumLayer> LayersOf(const TomlTable& document) {
+  const std::optional<TomlSection> table = SectionOf(document, LayerFields());
   if (!table) return {};
   const std::optional<double> visibility = table->Number("visibility_m");
   const std::optional<double> extinction = table->Number("extinction_per_m");
   if (visibility.has_value() == extinction.has_value()) {
-    table->Fail("visibility_m", "give one of fog.visibility_m and fog.extinction_per_m");
+    table->Fail("visibility_m",
+                fmt::format("give one of {} and {}", table->FullName("visibility_m"),
+                            table->FullName("extinction_per_m")));
   }
   MediumLayer layer;
   layer.extinction_per_m = extinction ? *extinction : kOpticalDepthOfVisibility / *visibility;
   layer.scale_height_m = std::numeric_limits<double>::infinity();
-  FogFields().Read(*table, layer);
+  LayerFields().Read(*table, layer);
   layer.phase = DropletPhaseOf(*table);
   return {layer};
 }
@@ -461,7 +463,7 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
   for (const TomlTable& light : document.Tables("light")) {
     scene.lights.push_back(LightOf(light, folder));
   }
-  scene.layers = LayersOfFog(document);
+  scene.layers = LayersOf(document);
   scene.town_zenith = TownZenithOf(document);
   for (const TomlTable& volume : document.Tables("volume")) {
     scene.volumes.push_back(VolumeOf(volume, folder, scene.medium.wavelengths_nm.size()));

@@ -133,7 +133,7 @@ struct Light {
   double outer_rad = 0.0;
 };
 
-/// A scattering layer of exponential density over the ellipsoid, such as fog (ExponentialLayer).
+/// A scattering layer of exponential density over the ellipsoid (ExponentialLayer).
 /// Light of lamps is scattered once in it, light of sun and sky to all orders (LayerLight).
 struct MediumLayer {
   double extinction_per_m = 0.0;        // at base_height_m
@@ -170,7 +170,7 @@ struct Scene {
   TerrainSource terrain;
   GroundCover ground;
   std::vector<Light> lights;
-  std::vector<MediumLayer> layers;  // of [fog]: at most one
+  std::vector<MediumLayer> layers;  // at most one
   std::vector<Volume> volumes;
   /// Brightness of the zenith on a moonless night with light pollution [V magnitudes per square
   /// arcsecond]; empty: no light pollution.

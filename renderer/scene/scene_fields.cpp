@@ -197,7 +197,7 @@ const TomlFields<Light>& LightFields() {
   return fields;
 }
 
-const TomlFields<MediumLayer>& FogFields() {
+const TomlFields<MediumLayer>& LayerFields() {
   static const TomlFields<MediumLayer> fields{
       "fog",
       {{"visibility_m", Number<MediumLayer>({1.0, 1e6}), "m", "", "", "900.0"},
@@ -278,7 +278,7 @@ std::vector<SceneSection> SectionsOfScene() {
        TerrainFields().Keys()},
       {"ground", false, "", GroundFields().Keys()},
       {"light", true, "a lamp; any number", LightFields().Keys()},
-      {"fog", false, "over the whole scene", FogFields().Keys()},
+      {"fog", false, "over the whole scene", LayerFields().Keys()},
       {"volume", true, "smoke, a bank of fog, a glowing gas; any number", VolumeFields().Keys()},
       {"night", false, "light of towns in the air", NightFields().Keys()}};
 }

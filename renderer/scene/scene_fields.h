@@ -19,7 +19,7 @@ namespace alpenglow::renderer {
 [[nodiscard]] const TomlFields<TerrainSource>& TerrainFields();
 [[nodiscard]] const TomlFields<GroundCover>& GroundFields();
 [[nodiscard]] const TomlFields<Light>& LightFields();
-[[nodiscard]] const TomlFields<MediumLayer>& FogFields();
+[[nodiscard]] const TomlFields<MediumLayer>& LayerFields();
 [[nodiscard]] const TomlFields<Scene>& NightFields();
 [[nodiscard]] const TomlFields<Volume>& VolumeFields();
 

@@ -196,7 +196,8 @@ void AddAirOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) 
   if (scene.town_zenith)
     metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
   for (const MediumLayer& layer : scene.layers)
-    metadata["alpenglow.fog"] = LayerText(layer) + NamedText(FogFields(), layer);
+    metadata["alpenglow." + LayerFields().name] =
+        LayerText(layer) + NamedText(LayerFields(), layer);
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     metadata[fmt::format("alpenglow.volume_{}_hash", i)] =
         Fingerprint(KeysOf(scene.volumes[i], hashes.grids.at(i)));

@@ -185,7 +185,7 @@ void Evaluate(benchmark::State& state, const PhaseFunction& phase) {
 }
 BENCHMARK_CAPTURE(Evaluate, CornetteShanks,
                   PhaseFunction{.kind = PhaseKind::kCornetteShanks, .g = 0.8});
-BENCHMARK_CAPTURE(Evaluate, Fog, FogPhase(12.0));
+BENCHMARK_CAPTURE(Evaluate, Fog, DropletPhase(12.0));
 BENCHMARK_CAPTURE(Evaluate, Table, Dusty().mie_phase.front());
 
 void Draw(benchmark::State& state, const PhaseFunction& phase) {
@@ -196,7 +196,7 @@ void Draw(benchmark::State& state, const PhaseFunction& phase) {
 }
 BENCHMARK_CAPTURE(Draw, CornetteShanks,
                   PhaseFunction{.kind = PhaseKind::kCornetteShanks, .g = 0.8});
-BENCHMARK_CAPTURE(Draw, Fog, FogPhase(12.0));
+BENCHMARK_CAPTURE(Draw, Fog, DropletPhase(12.0));
 BENCHMARK_CAPTURE(Draw, Table, Dusty().mie_phase.front());
 
 // Applies phase functions to the scattered light of four bands.

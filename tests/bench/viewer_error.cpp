@@ -22,7 +22,7 @@ std::string TextOf(const alpenglow::tests::AirErrors& errors) {
                      100.0 * errors.Percentile(99.0), 100.0 * errors.Percentile(100.0));
 }
 
-void Study(const SolvedAir& air, AirQuality quality, const AirEye& eye) {
+void Study(const SolvedAir& air, AirQuality quality, const EyeUnderLight& eye) {
   const MediumTables medium = MakeMediumTables(air);
   const AirTablesSize size = AirTablesSizeOf(quality, eye.altitude_m);
   const auto start = std::chrono::steady_clock::now();
@@ -32,7 +32,7 @@ void Study(const SolvedAir& air, AirQuality quality, const AirEye& eye) {
   const alpenglow::tests::AirReference reference(air, eye);
   constexpr int kRays = 1500;
   fmt::print("{:9.0f} {:6.1f} {:>3}x{}x{:<3} {:7.2f} | {} | {} | {}\n", eye.altitude_m,
-             std::asin(eye.mu_s) / kRadiansPerDegree, size.columns, size.rows + size.ground_rows,
+             std::asin(eye.mu_s()) / kRadiansPerDegree, size.columns, size.rows + size.ground_rows,
              size.distances, time.count(),
              TextOf(tests::SkyErrors(reference, reading, tables.map, kRays)),
              TextOf(tests::WayErrors(reference, reading, tables.map, kRays)),
@@ -59,6 +59,6 @@ void alpenglow::tests::ViewerError(int argc, char** argv) {
       "eye m", "sun", "size", "ms", "sky", "ways", "transmittance");
   for (const double altitude : NumbersOf(argc > 2 ? argv[2] : "2 1500 9000 12000 30000 400000")) {
     for (const double sun : NumbersOf(argc > 3 ? argv[3] : "60 30 6 0.2 -2 -6 -10"))
-      Study(air, quality, {altitude, std::sin(sun * kRadiansPerDegree)});
+      Study(air, quality, alpenglow::tests::EyeUnderSun(altitude, sun));
   }
 }

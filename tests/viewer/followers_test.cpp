@@ -128,81 +128,82 @@ const std::shared_ptr<const TabulatedAir>& Earth() {
   return earth;
 }
 
-AirView ViewAt(double altitude_m, double elevation_deg) {
-  const double e = elevation_deg * kRadiansPerDegree;
-  const glm::dvec3 sun(0.0, std::cos(e), std::sin(e));
-  return {altitude_m, 0.8, {sun, sun}};
+GeodeticPosition EyeAt(double altitude_m) { return {.latitude_rad = 0.8, .height_m = altitude_m}; }
+
+DistantLight SunUp(double elevation_deg) {
+  return {LightSource::kSun, tests::EyeUnderSun(0.0, elevation_deg).light, kSunAngularRadius_rad,
+          BandLight(4)};
 }
 
-// Frames with the same view until the tables shown are for it.
-void Frames(AirFollower& follower, const AirView& view) {
-  while (follower.eye().altitude_m != view.altitude_m) {
-    follower.Follow(view);
+// Frames with the same eye and sun until the tables shown are for them.
+void Frames(AirFollower& follower, const GeodeticPosition& eye, const DistantLight& sun) {
+  while (follower.eye().altitude_m != eye.height_m) {
+    follower.Follow(eye, sun);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
 }
 
 TEST_F(AirFollowerOnGpu, HasTablesForTheFirstFrame) {
-  const AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  const AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
   EXPECT_EQ(follower.eye().altitude_m, 2.0);
   EXPECT_EQ(follower.tabulated(), Earth());
   EXPECT_EQ(follower.making_s(), 0.0) << "made before drawing, not beside it";
 }
 
 TEST_F(AirFollowerOnGpu, ShowsExactTablesOnceAllStandsStill) {
-  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
-  Frames(follower, ViewAt(2.5, 30.0));
+  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
+  Frames(follower, EyeAt(2.5), SunUp(30.0));
   EXPECT_EQ(follower.eye().altitude_m, 2.5) << "however small the change";
   EXPECT_GT(follower.making_s(), 0.0);
 }
 
 TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
-  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(1000.0, 30.0));
-  follower.WaitUntilReady(ViewAt(1000.0, 30.0));
+  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(1000.0), SunUp(30.0));
+  follower.WaitUntilReady(EyeAt(1000.0), SunUp(30.0));
   for (int i = 1; i <= 10; ++i) {
-    follower.Follow(ViewAt(1000.0 + 0.01 * i, 30.0));
+    follower.Follow(EyeAt(1000.0 + 0.01 * i), SunUp(30.0));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   EXPECT_EQ(follower.eye().altitude_m, 1000.0);
 }
 
 TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
-  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 3.0));
-  follower.WaitUntilReady(ViewAt(2.0, 3.0));
+  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(3.0));
+  follower.WaitUntilReady(EyeAt(2.0), SunUp(3.0));
   // The sun moves so fast that it sinks by about 0.2 degrees until the tables are shown, however
   // long this machine takes for them: by less, no tables would be due; after a jump, small tables
   // for the present sun would be shown instead.
   constexpr double kFrame_s = 0.04, kSink_deg = 0.2;
-  const AirView now = ViewAt(2.0, 3.0 - kSink_deg * kFrame_s / (follower.making_s() + kFrame_s));
-  follower.Follow(now, kFrame_s);  // asks
-  const double made_mu_s = follower.eye().mu_s;
-  while (follower.eye().mu_s == made_mu_s) {
+  const DistantLight now = SunUp(3.0 - kSink_deg * kFrame_s / (follower.making_s() + kFrame_s));
+  follower.Follow(EyeAt(2.0), now, kFrame_s);  // asks
+  const double made_mu_s = follower.eye().mu_s();
+  while (follower.eye().mu_s() == made_mu_s) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    follower.Follow(now, kFrame_s);
+    follower.Follow(EyeAt(2.0), now, kFrame_s);
   }
-  EXPECT_LT(follower.eye().mu_s, now.light.for_air.z) << "lower, for the sun sinks";
+  EXPECT_LT(follower.eye().mu_s(), now.direction.for_air.z) << "lower, for the sun sinks";
 }
 
 TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
-  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
-  follower.Follow(ViewAt(500.0, 20.0));
-  follower.WaitUntilReady(ViewAt(9000.0, -3.0));
+  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
+  follower.Follow(EyeAt(500.0), SunUp(20.0));
+  follower.WaitUntilReady(EyeAt(9000.0), SunUp(-3.0));
   EXPECT_EQ(follower.eye().altitude_m, 9000.0);
-  EXPECT_NEAR(follower.eye().mu_s, std::sin(-3.0 * kRadiansPerDegree), 1e-12);
+  EXPECT_NEAR(follower.eye().mu_s(), std::sin(-3.0 * kRadiansPerDegree), 1e-12);
 }
 
 TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
-  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
   follower.Replace(MediumPreset("hazy"));
-  follower.Follow(ViewAt(2.0, 30.0));
+  follower.Follow(EyeAt(2.0), SunUp(30.0));
   EXPECT_EQ(follower.air()->medium().name, "earth") << "until then the last one";
   while (follower.tabulated() == Earth()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    follower.Follow(ViewAt(2.0, 30.0));
+    follower.Follow(EyeAt(2.0), SunUp(30.0));
   }
   EXPECT_EQ(follower.air()->medium().name, "hazy");
   EXPECT_EQ(follower.air()->solution(), AirSolution::kDraft);
-  follower.WaitUntilReady(ViewAt(2.0, 30.0));
+  follower.WaitUntilReady(EyeAt(2.0), SunUp(30.0));
   EXPECT_EQ(follower.air()->medium().name, "hazy");
   EXPECT_EQ(follower.air()->solution(), AirSolution::kFull);
 }
@@ -210,36 +211,40 @@ TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
 // --- what is left alone ---
 
 /// Tables made for one eye, as another sees them: root mean square of relative errors of the sky.
-double ErrorOfOld(const AirEye& made, const AirEye& now) {
+double ErrorOfOld(const EyeUnderLight& made, const EyeUnderLight& now) {
   const SolvedAir& air = tests::Earth();
   static const MediumTables medium = MakeMediumTables(air);
   const AirTablesSize size = AirTablesSizeOf(AirQuality::kHigh, now.altitude_m);
   const AirTables old = MakeAirTables(air, medium, made, size);
-  const AirMap map(air.medium(), now.altitude_m, now.ceiling_m,
+  const AirMap map(air.medium(), now.altitude_m,
                    static_cast<double>(air.multiple_scattering().grid().twilight_fall));
   return tests::SkyErrors(tests::AirReference(air, now), tests::AirReading(old, now), map, 200)
       .Rms();
 }
 
 TEST(AirChange, IsAboutTheErrorOfTablesThatAreNotMadeAnew) {
-  const auto sine = [](double degrees) { return std::sin(degrees * kRadiansPerDegree); };
-  const std::vector<std::pair<AirEye, AirEye>> changes{
-      {{1500.0, sine(40.0)}, {1500.0, sine(39.0)}}, {{1500.0, sine(5.0)}, {1500.0, sine(4.9)}},
-      {{1500.0, sine(0.1)}, {1500.0, sine(0.05)}},  {{2.0, sine(-4.0)}, {2.0, sine(-4.03)}},
-      {{2.0, sine(-9.0)}, {2.0, sine(-9.03)}},      {{200.0, sine(20.0)}, {260.0, sine(20.0)}},
-      {{9000.0, sine(20.0)}, {9100.0, sine(20.0)}}, {{30e3, sine(20.0)}, {31e3, sine(20.0)}},
-      {{400e3, sine(20.0)}, {402e3, sine(20.0)}}};
-  for (const auto& [made, now] : changes) {
+  constexpr std::array<std::array<double, 4>, 9> kChanges{{{1500.0, 40.0, 1500.0, 39.0},
+                                                           {1500.0, 5.0, 1500.0, 4.9},
+                                                           {1500.0, 0.1, 1500.0, 0.05},
+                                                           {2.0, -4.0, 2.0, -4.03},
+                                                           {2.0, -9.0, 2.0, -9.03},
+                                                           {200.0, 20.0, 260.0, 20.0},
+                                                           {9000.0, 20.0, 9100.0, 20.0},
+                                                           {30e3, 20.0, 31e3, 20.0},
+                                                           {400e3, 20.0, 402e3, 20.0}}};
+  for (const auto& [altitude_m, elevation_deg, later_m, later_deg] : kChanges) {
+    const EyeUnderLight made = tests::EyeUnderSun(altitude_m, elevation_deg);
+    const EyeUnderLight now = tests::EyeUnderSun(later_m, later_deg);
     const double error = ErrorOfOld(made, now);
     const double guess = AirChange(made, now);
-    EXPECT_LT(error, 2.0 * guess + 1e-3) << now.altitude_m << " m, sun " << now.mu_s;
-    EXPECT_GT(error, 0.2 * guess) << now.altitude_m << " m, sun " << now.mu_s
+    EXPECT_LT(error, 2.0 * guess + 1e-3) << now.altitude_m << " m, sun " << now.mu_s();
+    EXPECT_GT(error, 0.2 * guess) << now.altitude_m << " m, sun " << now.mu_s()
                                   << ": tables would be made anew for nothing";
   }
 }
 
 TEST_F(AirFollowerOnGpu, AMediumThatCannotBeShownIsRefusedAtOnce) {
-  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
   EXPECT_THROW(follower.Replace(MediumPreset("earth", WavelengthSet(8))), InputError);
   Medium broken = MediumPreset("earth");
   broken.mie_scale_height_m = -1.0;

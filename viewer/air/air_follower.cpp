@@ -145,25 +145,12 @@ constexpr double kGreatChange = 5e-3;  // change that starts new tables without 
 constexpr double kJump = 0.1;          // change at which small tables are computed at once instead
 constexpr double kRest = 2.0;  // rest, in units of the last computation time: drawing needs the CPU
 
-AirEye EyeOf(const AirView& view) {
-  const auto elevation = [](const glm::dvec3& to) {
-    return std::asin(std::clamp(to.z, -1.0, 1.0));
-  };
-  return {view.altitude_m, view.light.for_air.z, view.ceiling_m,
-          elevation(view.light.seen) - elevation(view.light.for_air)};
-}
-
-AirTables TablesOf(const TabulatedAir& tabulated, const AirView& view, AirQuality quality) {
-  return MakeAirTables(tabulated.air.OnSphereAt(view.latitude_rad), tabulated.tables, EyeOf(view),
-                       AirTablesSizeOf(quality, view.altitude_m));
-}
-
 }  // namespace
 
-double AirChange(const AirEye& made, const AirEye& now) {
-  const double elevation = std::asin(std::clamp(now.mu_s, -1.0, 1.0)) / kRadiansPerDegree;
+double AirChange(const EyeUnderLight& made, const EyeUnderLight& now) {
+  const double elevation = std::asin(std::clamp(now.mu_s(), -1.0, 1.0)) / kRadiansPerDegree;
   const double turned =
-      std::abs(std::asin(std::clamp(made.mu_s, -1.0, 1.0)) / kRadiansPerDegree - elevation);
+      std::abs(std::asin(std::clamp(made.mu_s(), -1.0, 1.0)) / kRadiansPerDegree - elevation);
   // The coefficients were measured by the test of this function.
   const double per_degree = elevation < 0.0 ? 0.6 : 0.8 / (1.0 + elevation);
   const double rise = std::abs(now.altitude_m - made.altitude_m);
@@ -172,23 +159,27 @@ double AirChange(const AirEye& made, const AirEye& now) {
   return turned * per_degree + rise / layer;
 }
 
-AirFollower::Made AirFollower::Make(const Request& request) {
-  return {request, TablesOf(*request.air, request.view, request.quality)};
+AirTables AirFollower::TablesOf(const Request& request) {
+  return MakeAirTables(request.air->air.OnSphereAt(request.latitude_rad), request.air->tables,
+                       request.eye, AirTablesSizeOf(request.quality, request.eye.altitude_m));
 }
 
 AirFollower::AirFollower(std::shared_ptr<const TabulatedAir> air, AirQuality quality,
-                         const AirView& first, Drafts drafts)
+                         const GeodeticPosition& eye, const DistantLight& light, Drafts drafts)
     : air_(std::move(air)),
+      shown_(air_),
       quality_(quality),
       drafts_(drafts),
-      eye_(EyeOf(first)),
-      last_view_(first),
+      last_(Wanted(eye, light)),
       solver_([](const Solve& solve) { return TabulateAir(solve.medium, solve.solution); }),
-      maker_(Make, std::equal_to<Request>()) {
+      maker_(
+          [](const Request& request) {
+            return Made{request, TablesOf(request)};
+          },
+          std::equal_to<Request>()) {
   textures_.Upload(air_->tables);
-  shown_ = air_;
-  ShowSmall(first);
-  textures_.SetView(first.altitude_m, first.light);
+  ShowSmall(last_);
+  textures_.SetView(last_.eye.altitude_m, last_.eye.light);
 }
 
 void AirFollower::Replace(const Medium& medium) {
@@ -224,9 +215,13 @@ void AirFollower::RefineDraft() {
     solver_.Request({air_->air.medium(), AirSolution::kFull});
 }
 
-AirFollower::Request AirFollower::Wanted(const AirView& view) const {
+AirFollower::Request AirFollower::Wanted(const GeodeticPosition& eye,
+                                         const DistantLight& light) const {
   const bool draft = air_->air.solution() == AirSolution::kDraft;
-  return {air_, view, draft ? std::min(quality_, AirQuality::kLow) : quality_};
+  return {air_,
+          {std::max(eye.height_m, 0.0), light.direction, light.radius_rad},
+          eye.latitude_rad,
+          draft ? std::min(quality_, AirQuality::kLow) : quality_};
 }
 
 // Returns whether tables for `wanted` should be computed now. A new medium or size starts at once.
@@ -236,41 +231,46 @@ bool AirFollower::IsDue(const Request& wanted) const {
   const std::optional<Request>& last = maker_.requested();
   if (!last || last->air != wanted.air || last->quality != wanted.quality) return true;
   if (maker_.IsBusy()) return false;
-  const double change = AirChange(EyeOf(last->view), EyeOf(wanted.view));
+  const double change = AirChange(last->eye, wanted.eye);
   if (maker_.IsResting() && change < kGreatChange) return false;
-  return wanted.view == last_view_ || change > kMostChange;
+  const bool stands = wanted.eye == last_.eye && wanted.latitude_rad == last_.latitude_rad;
+  return stands || change > kMostChange;
 }
 
-void AirFollower::Follow(const AirView& view, double seconds) {
+void AirFollower::Follow(const GeodeticPosition& eye, const DistantLight& light, double seconds) {
   if (seconds > 0.0) maker_.GiveWay();
   PollFinished();
   RefineDraft();
-  const Request wanted = Wanted(Ahead(view, seconds));
+  const Request now = Wanted(eye, light);
+  const Request wanted = Ahead(now, seconds);
   if (IsDue(wanted)) maker_.RequestIfNeeded(wanted);
-  last_view_ = view;
-  if (AirChange(eye_, EyeOf(view)) > kJump) ShowSmall(view);
-  textures_.SetView(view.altitude_m, view.light);
+  last_ = now;
+  if (AirChange(eye_, now.eye) > kJump) ShowSmall(now);
+  textures_.SetView(now.eye.altitude_m, now.eye.light);
 }
 
-// Returns the view with the sun extrapolated to the middle of the period in which tables requested
-// now will be displayed.
-AirView AirFollower::Ahead(const AirView& view, double seconds) const {
+// Returns the request with the sun extrapolated to the middle of the period in which tables
+// requested now will be displayed.
+AirFollower::Request AirFollower::Ahead(const Request& wanted, double seconds) const {
   constexpr double kLongestFrame_s = 0.2, kShown = 1.2;
-  const bool runs = seconds > 0.0 && seconds < kLongestFrame_s && view.light != last_view_.light;
-  if (!runs || AirChange(EyeOf(last_view_), EyeOf(view)) > kJump) return view;
-  AirView ahead = view;
-  const double frames = kShown * (making_s() + seconds) / seconds;
-  ahead.light = MovedOn(frames, last_view_.light, view.light);
+  const LightDirection& before = last_.eye.light;
+  const LightDirection& now = wanted.eye.light;
+  const bool runs = seconds > 0.0 && seconds < kLongestFrame_s && now != before;
+  if (!runs || AirChange(last_.eye, wanted.eye) > kJump) return wanted;
+  Request ahead = wanted;
+  ahead.eye.light = MovedOn(kShown * (making_s() + seconds) / seconds, before, now);
   return ahead;
 }
 
-void AirFollower::ShowSmall(const AirView& view) {
-  const AirTables tables = TablesOf(*shown_, view, AirQuality::kFirst);
+void AirFollower::ShowSmall(Request wanted) {
+  wanted.air = shown_;
+  wanted.quality = AirQuality::kFirst;
+  const AirTables tables = TablesOf(wanted);
   textures_.Upload(tables);
   eye_ = tables.eye;
 }
 
-void AirFollower::WaitUntilReady(const AirView& view) {
+void AirFollower::WaitUntilReady(const GeodeticPosition& eye, const DistantLight& light) {
   solver_.Wait();
   PollFinished();
   if (air_->air.solution() == AirSolution::kDraft) {
@@ -278,8 +278,8 @@ void AirFollower::WaitUntilReady(const AirView& view) {
     solver_.Wait();
     PollFinished();
   }
-  maker_.WaitUntilReady(Wanted(view));
-  Follow(view);
+  maker_.WaitUntilReady(Wanted(eye, light));
+  Follow(eye, light);
 }
 
 }  // namespace alpenglow::viewer

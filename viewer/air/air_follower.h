@@ -16,9 +16,9 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/astronomy/light_direction.h"
 #include "atmosphere/base/async_value.h"
 #include "lut/camera_tables/air_tables.h"
+#include "renderer/illumination/distant_light.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/layer.h"
@@ -73,18 +73,9 @@ class AirTextures {
   bool is_of_set_sun_ = false;
 };
 
-/// View of one frame, as far as the air's tables depend on it.
-struct AirView {
-  double altitude_m;    // altitude of the eye over the sphere that osculates the ellipsoid below it
-  double latitude_rad;  // latitude of the eye
-  LightDirection light;                   // sun or moon in the frame east, north, up of the eye
-  double ceiling_m = AirEye{}.ceiling_m;  // upper bound of the height of land
-  bool operator==(const AirView&) const = default;
-};
-
 /// Returns an estimate of the error, relative to the light, of tables that were made for one eye
 /// and are used for another.
-[[nodiscard]] double AirChange(const AirEye& made, const AirEye& now);
+[[nodiscard]] double AirChange(const EyeUnderLight& made, const EyeUnderLight& now);
 
 /// Computes and displays the tables of the air. It must be used on the thread of the context that
 /// is current at its construction.
@@ -94,7 +85,9 @@ class AirFollower {
   /// draft, because another follower solves it.
   enum class Drafts { kRefined, kKept };
   /// Computes small tables for the first frame before it returns, which takes some milliseconds.
-  AirFollower(std::shared_ptr<const TabulatedAir> air, AirQuality quality, const AirView& first,
+  /// @param eye, light  of the first frame, as in Follow.
+  AirFollower(std::shared_ptr<const TabulatedAir> air, AirQuality quality,
+              const GeodeticPosition& eye, const DistantLight& light,
               Drafts drafts = Drafts::kRefined);
 
   /// Replaces the medium, which is solved beside drawing and displayed when it is ready: first as a
@@ -107,18 +100,19 @@ class AirFollower {
   /// does not wait for the requests. After a jump in time or place with an AirChange above one
   /// tenth it computes small tables, which takes some milliseconds. While the sun moves, tables are
   /// computed for the position of the sun when they will be displayed.
+  /// @param light  in the frame east, north, up of the eye.
   /// @param seconds  since the last call; 0: the clock is stopped.
-  void Follow(const AirView& view, double seconds = 0.0);
+  void Follow(const GeodeticPosition& eye, const DistantLight& light, double seconds = 0.0);
   /// Waits until the final tables of Follow are displayed. It is used for pictures that are written
   /// to files.
-  void WaitUntilReady(const AirView& view);
+  void WaitUntilReady(const GeodeticPosition& eye, const DistantLight& light);
 
   /// Returns the displayed textures.
   [[nodiscard]] const AirTextures& textures() const { return textures_; }
   /// Returns the air of the displayed textures.
   [[nodiscard]] const std::shared_ptr<const TabulatedAir>& tabulated() const { return shown_; }
   [[nodiscard]] std::shared_ptr<const SolvedAir> air() const { return {shown_, &shown_->air}; }
-  [[nodiscard]] const AirEye& eye() const { return eye_; }
+  [[nodiscard]] const EyeUnderLight& eye() const { return eye_; }
   /// Returns the computation time of the displayed tables; 0 until the first tables from the other
   /// thread.
   [[nodiscard]] double making_s() const { return maker_.making_s(); }
@@ -126,7 +120,8 @@ class AirFollower {
  private:
   struct Request {
     std::shared_ptr<const TabulatedAir> air;
-    AirView view;
+    EyeUnderLight eye;
+    double latitude_rad;  // of the eye; its sphere osculates the ellipsoid there
     AirQuality quality;
     bool operator==(const Request&) const = default;
   };
@@ -141,13 +136,13 @@ class AirFollower {
     AirSolution solution;
   };
 
-  [[nodiscard]] static Made Make(const Request& request);
+  [[nodiscard]] static AirTables TablesOf(const Request& request);
   void Show(const Made& made);
-  void ShowSmall(const AirView& view);
-  [[nodiscard]] AirView Ahead(const AirView& view, double seconds) const;
+  void ShowSmall(Request wanted);
+  [[nodiscard]] Request Ahead(const Request& wanted, double seconds) const;
   void PollFinished();
   void RefineDraft();
-  [[nodiscard]] Request Wanted(const AirView& view) const;
+  [[nodiscard]] Request Wanted(const GeodeticPosition& eye, const DistantLight& light) const;
   [[nodiscard]] bool IsDue(const Request& wanted) const;
 
   std::shared_ptr<const TabulatedAir> air_;  // displayed next
@@ -155,8 +150,8 @@ class AirFollower {
   AirQuality quality_;
   Drafts drafts_;
   AirTextures textures_;
-  AirEye eye_;
-  AirView last_view_;
+  EyeUnderLight eye_;  // of the displayed tables
+  Request last_;       // of the last call
   Clock::time_point replaced_at_{};
   AsyncValue<Solve, std::shared_ptr<const TabulatedAir>> solver_;
   AsyncValue<Request, Made> maker_;

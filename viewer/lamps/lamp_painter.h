@@ -31,7 +31,7 @@ struct LampQuality {
 };
 /// High differs from LampLight by 0.5 % in the mean, and 99.9 % of pixels are within 2 %
 /// (tests/viewer/lamps/lamp_light_test.cpp). Medium was measured against 12 nodes at each of
-/// 1280 x 720 pixels, eight lamps in fog: mean 0.2 %, 99.9 % within 3.5 %, except at edges of
+/// 1280 x 720 pixels, eight lamps in a layer: mean 0.2 %, 99.9 % within 3.5 %, except at edges of
 /// beams, which are as coarse as the steps.
 inline constexpr LampQuality kLowLamps{4, 4};
 inline constexpr LampQuality kMediumLamps{5, 6};

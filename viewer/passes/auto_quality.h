@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lut/camera_tables/air_tables.h"
-#include "renderer/media/fog_map.h"
+#include "renderer/media/layer_map.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/shade/shafts.h"
 

@@ -46,10 +46,6 @@ LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) 
   return {AxesOf(view), samples, -RefractivitySlopeAt(GentleAirOf(medium), 0.0)};
 }
 
-AirView AirViewOf(const CameraPose& eye, const LightDirection& light) {
-  return {std::max(eye.place.height_m, 0.0), eye.place.latitude_rad(), light};
-}
-
 }  // namespace
 
 FirstAir DraftOfAir(const Scene& scene) {
@@ -68,9 +64,11 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
                            const PaintSizes& sizes, FirstAir first_air)
     : fixed_(scene, !land.IsEmpty()),
       sizes_(sizes),
-      sun_view_(AirViewOf(first.eye, DirectionOf(ApparentSunAt(first.eye.place, first.now,
-                                                               GentleAirOf(MediumAt(scene)))))),
-      air_(first_air ? std::move(first_air) : TabulateAir(MediumAt(scene)), sizes.air, sun_view_),
+      sunlit_place_(first.eye.place),
+      sun_(SunlightOf(ApparentSunAt(sunlit_place_, first.now, GentleAirOf(MediumAt(scene))),
+                      scene.medium)),
+      air_(first_air ? std::move(first_air) : TabulateAir(MediumAt(scene)), sizes.air,
+           sunlit_place_, sun_),
       land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), fixed_.ellipsoid)),
       ground_(scene.ground, fixed_.drape.colours, {}),
       ground_textures_(air_.air()->multiple_scattering()),
@@ -135,13 +133,16 @@ void PaintedScene::TakeSkyByPixel() {
 
 void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace,
                              double seconds) {
-  const auto keep_up = [&](AirFollower& air, const AirView& seen) {
-    pace == Pace::kFollow ? air.Follow(seen, seconds) : air.WaitUntilReady(seen);
+  const auto keep_up = [&](AirFollower& air, const GeodeticPosition& eye,
+                           const DistantLight& light) {
+    pace == Pace::kFollow ? air.Follow(eye, light, seconds) : air.WaitUntilReady(eye, light);
   };
   const DistantLight* moon = OfSource(lights, LightSource::kMoon);
-  if (const DistantLight* sun = OfSource(lights, LightSource::kSun))
-    sun_view_ = AirViewOf(view.eye, sun->direction);
-  keep_up(air_, sun_view_);
+  if (const DistantLight* sun = OfSource(lights, LightSource::kSun)) {
+    sunlit_place_ = view.eye.place;
+    sun_ = *sun;
+  }
+  keep_up(air_, sunlit_place_, sun_);
   if (known_air_ != air_.air()) {
     known_air_ = air_.air();
     air_here_ =
@@ -150,13 +151,13 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
     ground_textures_.SetAir(known_air_->multiple_scattering());
   }
   if (moon == nullptr) return;
-  const AirView seen = AirViewOf(view.eye, moon->direction);
   if (!moon_air_ || moon_air_of_ != air_.air()) {
-    moon_air_.emplace(air_.tabulated(), sizes_.air, seen, AirFollower::Drafts::kKept);
+    moon_air_.emplace(air_.tabulated(), sizes_.air, view.eye.place, *moon,
+                      AirFollower::Drafts::kKept);
     moon_air_of_ = air_.air();
   }
   moon_air_->SetQuality(sizes_.air);
-  keep_up(*moon_air_, seen);
+  keep_up(*moon_air_, view.eye.place, *moon);
 }
 
 void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {

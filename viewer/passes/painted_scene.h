@@ -17,8 +17,8 @@
 #include "viewer/air/air_follower.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/open_sky_follower.h"
-#include "viewer/lamps/scene_media.h"
 #include "viewer/land/landscape.h"
+#include "viewer/media/scene_media.h"
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/frame_sky.h"
 #include "viewer/passes/painted_view.h"
@@ -125,8 +125,9 @@ class PaintedScene {
 
   FixedScene fixed_;
   PaintSizes sizes_;
-  AirView sun_view_;                            // the last view in which the sun was a light
-  AirFollower air_;                             // at sun_view_
+  GeodeticPosition sunlit_place_;               // of the last eye for which the sun was a light
+  DistantLight sun_;                            // as it was then
+  AirFollower air_;                             // of that eye under that sun
   std::shared_ptr<const SolvedAir> known_air_;  // the medium in ground_textures_
   std::shared_ptr<const SolvedAir> air_here_;   // known_air_ on the sphere of the eye
   std::array<OpenSkyFollower, kLightSources> open_skies_;

@@ -11,12 +11,13 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "lut/camera_tables/air_rows.h"
 #include "lut/cli/messages.h"
+#include "renderer/scene/scene_fields.h"
 #include "renderer/surface/ground_pattern.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/lamps/scene_media.h"
+#include "viewer/media/scene_media.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/shade/shafts.h"
 #include "viewer/shaders/pass_setup.h"
@@ -102,8 +103,8 @@ namespace {
 
 /// Returns advice on the parts of a scene that need textures; empty if it has none.
 std::string PartsToOmit(const PictureKind& kind) {
-  std::vector<const char*> parts;
-  if (!kind.media.IsEmpty()) parts.push_back("[fog]");
+  std::vector<std::string> parts;
+  if (!kind.media.IsEmpty()) parts.push_back(fmt::format("[{}]", LayerFields().name));
   if (kind.material.HasWater()) parts.push_back("water");
   if (kind.material.HasGloss() && !kind.material.HasWater()) parts.push_back("glossy ground");
   if (kind.material.drape() != nullptr) parts.push_back("the picture on the terrain");

@@ -31,7 +31,7 @@
 #include "viewer/gl/shader.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/lamps/lamp_painter.h"
-#include "viewer/lamps/scene_media.h"
+#include "viewer/media/scene_media.h"
 #include "viewer/passes/frame.h"
 #include "viewer/passes/frame_sky.h"
 #include "viewer/passes/painted_scene.h"

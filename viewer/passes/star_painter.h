@@ -23,7 +23,7 @@
 #include "renderer/illumination/night_light.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
-#include "viewer/lamps/scene_media.h"
+#include "viewer/media/scene_media.h"
 #include "viewer/passes/frame_sky.h"
 #include "viewer/passes/painted_view.h"
 

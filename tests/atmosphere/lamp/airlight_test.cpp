@@ -296,7 +296,7 @@ TEST(Airlight, LightThatEndsAtOnceIsANumber) {
 // Fixed on 2026-11-21: where two points of the ray at which the light was looked at fell together,
 // the panel between them had no width, and the radiance was not a number.
 TEST(Airlight, IsANumberInEveryDirectionAroundAPointUnderALamp) {
-  const LampAir air = HeightFogUnderClearAir(FogPhase(12.0));
+  const LampAir air = HeightFogUnderClearAir(DropletPhase(12.0));
   const GaussRule& rule = GaussLegendre(3);
   for (double below_m = 0.2; below_m < 2e4; below_m *= 1.6) {
     LampSegment ray;

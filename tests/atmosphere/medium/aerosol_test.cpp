@@ -229,7 +229,7 @@ TEST(LorenzMie, FogFitsItsDropletsAndOneLobeDoesNot) {
       }
       return Integral(angles, difference);
     };
-    EXPECT_LT(distance(FogPhase(diameter_um)), diameter_um <= 5.0 ? 0.11 : 0.16)
+    EXPECT_LT(distance(DropletPhase(diameter_um)), diameter_um <= 5.0 ? 0.11 : 0.16)
         << diameter_um << " um";
     const PhaseFunction lobe{.kind = PhaseKind::kHenyeyGreenstein, .g = mie.mean_cosine};
     if (diameter_um >= 3.0) {

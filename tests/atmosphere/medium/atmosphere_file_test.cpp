@@ -238,7 +238,7 @@ TEST(AtmosphereFile, PhaseParametersMayBeOnePerWavelength) {
 
 TEST(AtmosphereFile, FogIsKnownByItsDroplets) {
   const Medium medium = Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\n");
-  EXPECT_EQ(medium.mie_phase.front(), FogPhase(12.0));
+  EXPECT_EQ(medium.mie_phase.front(), DropletPhase(12.0));
 }
 
 TEST(AtmosphereFile, APhaseFunctionMayBeAFileBesideTheAtmosphere) {
@@ -296,7 +296,7 @@ TEST(AtmosphereFile, TheLoadOfAMixtureMayBeGivenInEveryWay) {
               2.0 * turbid.rayleigh_scattering_per_m[1] * MoleculeColumn_m(turbid), 1e-12);
   const Medium fog =
       Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 10\n[aerosol]\n" + mixture);
-  EXPECT_EQ(fog.mie_phase.front(), FogPhase(10.0)) << "[mie] may say otherwise";
+  EXPECT_EQ(fog.mie_phase.front(), DropletPhase(10.0)) << "[mie] may say otherwise";
 }
 
 TEST(AtmosphereFile, WavelengthsBeyondTheDataOfThePresetNeedTheirLists) {

@@ -54,10 +54,10 @@ std::shared_ptr<const PhaseTable> TabulatedLobe(double g) {
 std::vector<PhaseFunction> ManyPhases() {
   std::vector<PhaseFunction> phases{{.kind = PhaseKind::kTable, .table = TabulatedLobe(0.0)},
                                     {.kind = PhaseKind::kTable, .table = TabulatedLobe(0.9)},
-                                    FogPhase(2.0),
-                                    FogPhase(5.0),
-                                    FogPhase(20.0),
-                                    FogPhase(50.0),
+                                    DropletPhase(2.0),
+                                    DropletPhase(5.0),
+                                    DropletPhase(20.0),
+                                    DropletPhase(50.0),
                                     Make(PhaseKind::kRayleigh),
                                     MakeDouble(0.89, 0.09, 0.26),
                                     MakeDouble(0.999, -0.9, 0.5),
@@ -189,7 +189,7 @@ void ExpectHistogramOf(const PhaseFunction& phase) {
 
 TEST(Phase, SamplesOfTwoLobesFillHistogramBinsAsTheLobesDo) {
   ExpectHistogramOf(MakeDouble(0.8, -0.4, 0.3));
-  ExpectHistogramOf(FogPhase(12.0));
+  ExpectHistogramOf(DropletPhase(12.0));
 }
 
 TEST(Phase, SamplesStayInRangeAtTheEndsOfTheUnitInterval) {
@@ -205,20 +205,20 @@ TEST(Phase, SamplesStayInRangeAtTheEndsOfTheUnitInterval) {
 TEST(Phase, FogScattersForwardTheMoreTheLargerItsDroplets) {
   double before = 0.0;
   for (const double diameter_um : {5.0, 10.0, 20.0, 50.0}) {
-    const PhaseFunction fog = FogPhase(diameter_um);
+    const PhaseFunction fog = DropletPhase(diameter_um);
     EXPECT_GT(fog.g, before) << "forward lobes narrow with the diameter";
     before = fog.g;
     EXPECT_NEAR(MeanCosine(fog), 0.86, 0.04)
         << diameter_um << " um: drops of water have mean cosines of 0.82 to 0.89 in visible light";
     for (const double c : {-1.0, -0.3, 0.7, 1.0}) {
-      EXPECT_NEAR(Phase(fog, c) / shared::PhaseFog(c, diameter_um), 1.0, 1e-12);
+      EXPECT_NEAR(Phase(fog, c) / shared::PhaseDroplets(c, diameter_um), 1.0, 1e-12);
     }
   }
-  EXPECT_NEAR(FogPhase(4.9999).g, FogPhase(5.0).g, 0.003) << "the two fits meet";
-  EXPECT_NEAR(FogPhase(4.9999).g_back, FogPhase(5.0).g_back, 0.01);
-  EXPECT_NEAR(FogPhase(4.9999).back_weight, FogPhase(5.0).back_weight, 0.01);
-  EXPECT_THROW(static_cast<void>(FogPhase(1.4)), InputError);
-  EXPECT_THROW(static_cast<void>(FogPhase(51.0)), InputError);
+  EXPECT_NEAR(DropletPhase(4.9999).g, DropletPhase(5.0).g, 0.003) << "the two fits meet";
+  EXPECT_NEAR(DropletPhase(4.9999).g_back, DropletPhase(5.0).g_back, 0.01);
+  EXPECT_NEAR(DropletPhase(4.9999).back_weight, DropletPhase(5.0).back_weight, 0.01);
+  EXPECT_THROW(static_cast<void>(DropletPhase(1.4)), InputError);
+  EXPECT_THROW(static_cast<void>(DropletPhase(51.0)), InputError);
 }
 
 // Hard case 13.

@@ -97,7 +97,7 @@ TEST(PathTracer, OrderOneIsTheIntegralOfSingleScattering) {
 // too dark, four times their standard error, or one of them was as bright as hundreds.
 TEST(PathTracer, FindsTheLightOfANarrowPeakWithAnHonestError) {
   Medium mist = InScalarLight(MediumPreset("earth", {550.0}));
-  mist.mie_phase = {FogPhase(50.0)};
+  mist.mie_phase = {DropletPhase(50.0)};
   mist.mie_extinction_per_m = {0.5 / 1200.0};
   mist.mie_scattering_per_m = {0.97 * 0.5 / 1200.0};
   const ViewRay ray = RayFromAngles(2.0, 50.0, 30.0, 50.0);

@@ -154,7 +154,7 @@ class Ways {
   }
 
   [[nodiscard]] Luminances Viewer(const Setting& at) const {
-    const AirEye eye{at.eye_m, std::sin(at.sun_elevation_deg * kRadiansPerDegree)};
+    const EyeUnderLight eye = tests::EyeUnderSun(at.eye_m, at.sun_elevation_deg);
     const AirTables tables =
         MakeAirTables(air_, viewer_, eye, AirTablesSizeOf(AirQuality::kLow, at.eye_m));
     const tests::AirReading reading(tables);
@@ -303,7 +303,7 @@ Aureole AureoleOf(const Atmosphere& atmosphere, double sun_elevation_deg) {
   const HdrImage image = RenderPanorama(sky, options);
   const SolvedAir air = SolvedOf(sky);
   const MediumTables medium = MakeMediumTables(air);
-  const AirEye eye{options.altitude_m, std::sin(sun_elevation_deg * kRadiansPerDegree)};
+  const EyeUnderLight eye = tests::EyeUnderSun(options.altitude_m, sun_elevation_deg);
   const AirTables tables =
       MakeAirTables(air, medium, eye, AirTablesSizeOf(AirQuality::kLow, eye.altitude_m));
   const tests::AirReading reading(tables);

@@ -41,15 +41,21 @@ struct AirToPoint {
   glm::dvec4 single, multiple_scattering, transmittance;
 };
 
+/// An eye under a sun in the north that is seen at this elevation, without refraction.
+inline EyeUnderLight EyeUnderSun(double altitude_m, double elevation_deg) {
+  const double elevation = elevation_deg * kRadiansPerDegree;
+  return {altitude_m, Unrefracted({0.0, std::cos(elevation), std::sin(elevation)})};
+}
+
 class AirReading {
  public:
   explicit AirReading(const AirTables& tables) : AirReading(tables, tables.eye) {}
   /// The constructor reads the tables for another eye and another sun, as AirTextures::SetView
   /// does.
-  AirReading(const AirTables& tables, const AirEye& eye)
+  AirReading(const AirTables& tables, const EyeUnderLight& eye)
       : tables_(tables),
-        mu_s_(eye.mu_s),
-        sun_(std::acos(std::clamp(eye.mu_s, -1.0, 1.0))),
+        mu_s_(eye.mu_s()),
+        sun_(std::acos(std::clamp(eye.mu_s(), -1.0, 1.0))),
         sun_seen_(eye.zenith_angle_seen_rad()),
         dip_(-std::asin(shared::HorizonCosine<double>(std::max(eye.altitude_m, 0.0) / 1000.0,
                                                       tables.map.radius))) {}

@@ -21,7 +21,7 @@ using AirErrors = SkyViewErrors;
 
 class AirReference {
  public:
-  AirReference(const SolvedAir& air, const AirEye& eye)
+  AirReference(const SolvedAir& air, const EyeUnderLight& eye)
       : exact_(air.medium()), air_(air), sky_(air.medium(), air.multiple_scattering()), eye_(eye) {}
 
   /// Returns the light of the whole ray, in the band.
@@ -55,7 +55,7 @@ class AirReference {
  private:
   [[nodiscard]] ViewRay RayOf(const AirMap& map, double angle, double azimuth) const {
     const double mu = std::sin(angle - map.horizon_dip);
-    return {eye_.altitude_m, mu, eye_.mu_s, CosineOf(mu, eye_.mu_s, azimuth)};
+    return {eye_.altitude_m, mu, eye_.mu_s(), CosineOf(mu, eye_.mu_s(), azimuth)};
   }
   [[nodiscard]] double SeenCosineOf(double mu, double azimuth) const {
     return CosineOf(mu, std::cos(eye_.zenith_angle_seen_rad()), azimuth);
@@ -68,7 +68,7 @@ class AirReference {
   SingleScattering<double> exact_;
   const SolvedAir& air_;
   DirectSky sky_;
-  AirEye eye_;
+  EyeUnderLight eye_;
 };
 
 /// A place that land may be seen at.

@@ -29,11 +29,7 @@ const SolvedAir& Hazy() {
   return hazy;
 }
 
-AirEye EyeUnder(double altitude_m, double elevation_deg) {
-  return {altitude_m, std::sin(elevation_deg * kRadiansPerDegree)};
-}
-
-AirTables TablesOf(const SolvedAir& air, const AirEye& eye, AirQuality quality) {
+AirTables TablesOf(const SolvedAir& air, const EyeUnderLight& eye, AirQuality quality) {
   return MakeAirTables(air, MakeMediumTables(air), eye, AirTablesSizeOf(quality, eye.altitude_m));
 }
 
@@ -42,10 +38,10 @@ struct Bounds {
   double sky, ways, transmittance;
 };
 
-void ExpectErrorsBelow(const SolvedAir& air, const AirEye& eye, AirQuality quality,
+void ExpectErrorsBelow(const SolvedAir& air, const EyeUnderLight& eye, AirQuality quality,
                        const Bounds& bounds) {
   SCOPED_TRACE(fmt::format("{}, {} m, sine of the sun's elevation {}", air.medium().name,
-                           eye.altitude_m, eye.mu_s));
+                           eye.altitude_m, eye.mu_s()));
   const MediumTables medium = MakeMediumTables(air);
   const AirTables tables = TablesOf(air, eye, quality);
   const tests::AirReading reading(tables);
@@ -65,22 +61,25 @@ void ExpectErrorsBelow(const SolvedAir& air, const AirEye& eye, AirQuality quali
 // Near a low sun most of the error is that of the glow, which is taken to be that of one column of
 // aerosol.
 TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, 60.0), AirQuality::kHigh, {7e-5, 2.1e-4, 2e-5});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 6.0), AirQuality::kHigh,
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(2.0, 60.0), AirQuality::kHigh,
+                    {7e-5, 2.1e-4, 2e-5});
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(1500.0, 6.0), AirQuality::kHigh,
                     {1.7e-3, 6.2e-4, 9e-5});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 0.2), AirQuality::kHigh,
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(1500.0, 0.2), AirQuality::kHigh,
                     {1.5e-3, 1.5e-3, 9e-5});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, -4.0), AirQuality::kHigh,
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(1500.0, -4.0), AirQuality::kHigh,
                     {8e-4, 1.3e-3, 9e-5});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, -10.0), AirQuality::kHigh, {4e-4, 2.5e-3, 2e-5});
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(2.0, -10.0), AirQuality::kHigh,
+                    {4e-4, 2.5e-3, 2e-5});
 }
 
 // From 2500 m, where a setting sun is seen on the horizon, low air about it is dark and high air is
 // not: tables whose aureole is elsewhere than the one that shaders put on them have a dark spot and
 // a bright.
 TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
-  AirEye eye = EyeUnder(2500.0, -1.8);
-  eye.lower_for_air_rad = 0.5 * kRadiansPerDegree;
+  const EyeUnderLight eye{
+      2500.0,
+      {tests::EyeUnderSun(0.0, -1.3).light.seen, tests::EyeUnderSun(0.0, -1.8).light.for_air}};
   const MediumTables medium = MakeMediumTables(tests::Earth());
   const tests::AirReference reference(tests::Earth(), eye);
   // Largest error of the sky within two degrees of the sun and of the horizon.
@@ -102,33 +101,36 @@ TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
   };
   EXPECT_LT(worst_of(TablesOf(tests::Earth(), eye, AirQuality::kHigh)), 0.01)
       << "half as much again as measured, where red dies within a degree";
-  AirEye elsewhere = eye;
-  elsewhere.lower_for_air_rad = 0.0;
+  const EyeUnderLight elsewhere = tests::EyeUnderSun(2500.0, -1.8);
   EXPECT_GT(worst_of(TablesOf(tests::Earth(), elsewhere, AirQuality::kHigh)), 0.1)
       << "tables of an aureole that is elsewhere have a spot";
 }
 
 TEST(AirTables, OfGreatHeightsAreThoseOfTheIntegrator) {
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, 30.0), AirQuality::kHigh, {1.6e-4, 8e-4, 3e-4});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, -4.0), AirQuality::kHigh, {2.1e-3, 1.6e-3, 3e-4});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(30e3, 6.0), AirQuality::kHigh, {4.5e-4, 1.6e-3, 3e-4});
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(9e3, 30.0), AirQuality::kHigh,
+                    {1.6e-4, 8e-4, 3e-4});
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(9e3, -4.0), AirQuality::kHigh,
+                    {2.1e-3, 1.6e-3, 3e-4});
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(30e3, 6.0), AirQuality::kHigh,
+                    {4.5e-4, 1.6e-3, 3e-4});
 }
 
 TEST(AirTables, FromAboveTheAirAreThoseOfTheIntegrator) {
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(400e3, 60.0), AirQuality::kHigh,
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(400e3, 60.0), AirQuality::kHigh,
                     {5.5e-4, 1.7e-3, 6e-4});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(400e3, -2.0), AirQuality::kHigh,
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(400e3, -2.0), AirQuality::kHigh,
                     {1.6e-3, 4.5e-3, 6e-4});
 }
 
 TEST(AirTables, OfHazeAreThoseOfTheIntegrator) {
-  ExpectErrorsBelow(Hazy(), EyeUnder(300.0, 30.0), AirQuality::kHigh, {2e-4, 9e-4, 4e-5});
+  ExpectErrorsBelow(Hazy(), tests::EyeUnderSun(300.0, 30.0), AirQuality::kHigh, {2e-4, 9e-4, 4e-5});
 }
 
 TEST(AirTables, OfLowQualityAreGoodToAPercent) {
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 20.0), AirQuality::kLow,
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(1500.0, 20.0), AirQuality::kLow,
                     {1.25e-3, 1.2e-3, 3.6e-4});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, 2.0), AirQuality::kLow, {1.3e-3, 4.5e-3, 1.2e-3});
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(9e3, 2.0), AirQuality::kLow,
+                    {1.3e-3, 4.5e-3, 1.2e-3});
 }
 
 // Dust's phase function rises a hundredfold within ten degrees of the sun. Of the largest error,
@@ -136,12 +138,12 @@ TEST(AirTables, OfLowQualityAreGoodToAPercent) {
 TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
   const SolvedAir dusty =
       tests::SolvedAsClearAir(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"));
-  const AirEye eye = EyeUnder(300.0, 20.0);
+  const EyeUnderLight eye = tests::EyeUnderSun(300.0, 20.0);
   const MediumTables medium = MakeMediumTables(dusty);
   const AirTables tables = TablesOf(dusty, eye, AirQuality::kLow);
   const tests::AirReading reading(tables);
   const tests::AirReference reference(dusty, eye);
-  const double sun = std::asin(eye.mu_s) + tables.map.horizon_dip;
+  const double sun = std::asin(eye.mu_s()) + tables.map.horizon_dip;
   for (int i = 1; i <= 60; ++i) {
     const double from_sun = kRadiansPerDegree * (0.27 + 10.0 * Halton(i, 2) * Halton(i, 2));
     const double turn = kPi * Halton(i, 3);
@@ -175,8 +177,8 @@ TEST(AirTables, AreFiniteAndNotNegativeForEveryEyeAndSun) {
     for (const double elevation_deg :
          std::span(kSuns_deg).subspan(first, tests::ScaledDown<std::size_t>(3, 1))) {
       SCOPED_TRACE(fmt::format("{} m, sun at {} degrees", altitude_m, elevation_deg));
-      const AirTables tables =
-          TablesOf(tests::Earth(), EyeUnder(altitude_m, elevation_deg), AirQuality::kFirst);
+      const AirTables tables = TablesOf(
+          tests::Earth(), tests::EyeUnderSun(altitude_m, elevation_deg), AirQuality::kFirst);
       ExpectSound(tables.sky, "sky");
       ExpectSound(tables.to_space, "to_space");
       ExpectSound(tables.extinction, "extinction");
@@ -189,7 +191,8 @@ TEST(AirTables, AreFiniteAndNotNegativeForEveryEyeAndSun) {
 TEST(AirTables, OfMarsAreFiniteAndNotNegative) {
   const SolvedAir mars = tests::SolvedAsClearAir(MediumPreset("mars"));
   for (const double altitude_m : {0.0, 30e3, 400e3}) {
-    const AirTables tables = TablesOf(mars, EyeUnder(altitude_m, 0.1), AirQuality::kFirst);
+    const AirTables tables =
+        TablesOf(mars, tests::EyeUnderSun(altitude_m, 0.1), AirQuality::kFirst);
     for (const AirTexels* texels :
          {&tables.sky, &tables.extinction, &tables.single, &tables.multiple_scattering})
       ExpectSound(*texels, "of Mars");
@@ -197,14 +200,16 @@ TEST(AirTables, OfMarsAreFiniteAndNotNegative) {
 }
 
 TEST(AirTables, BelowSeaLevelAreThoseOfSeaLevel) {
-  const AirTables below = TablesOf(tests::Earth(), EyeUnder(-100.0, 20.0), AirQuality::kFirst);
-  const AirTables at = TablesOf(tests::Earth(), EyeUnder(0.0, 20.0), AirQuality::kFirst);
+  const AirTables below =
+      TablesOf(tests::Earth(), tests::EyeUnderSun(-100.0, 20.0), AirQuality::kFirst);
+  const AirTables at = TablesOf(tests::Earth(), tests::EyeUnderSun(0.0, 20.0), AirQuality::kFirst);
   EXPECT_EQ(below.sky.texel, at.sky.texel);
   EXPECT_EQ(below.single.texel, at.single.texel);
 }
 
 TEST(AirTables, UnderASunInTheZenithHaveNoAzimuth) {
-  const AirTables tables = TablesOf(tests::Earth(), EyeUnder(1500.0, 90.0), AirQuality::kFirst);
+  const AirTables tables =
+      TablesOf(tests::Earth(), tests::EyeUnderSun(1500.0, 90.0), AirQuality::kFirst);
   for (int y = 0; y < tables.sky.height; ++y) {
     const glm::vec4 towards = tables.sky.At(0, y), away = tables.sky.At(tables.sky.width - 1, y);
     for (glm::length_t band = 0; band < 4; ++band)
@@ -213,7 +218,8 @@ TEST(AirTables, UnderASunInTheZenithHaveNoAzimuth) {
 }
 
 TEST(AirTables, FarBelowTheHorizonTheSunLeavesNothingScatteredOnce) {
-  const AirTables tables = TablesOf(tests::Earth(), EyeUnder(2.0, -18.0), AirQuality::kFirst);
+  const AirTables tables =
+      TablesOf(tests::Earth(), tests::EyeUnderSun(2.0, -18.0), AirQuality::kFirst);
   for (const glm::vec4& texel : tables.single.texel)
     ASSERT_EQ(texel, glm::vec4(0.0F)) << "up to 9 km all is in the planet's shadow";
 }
@@ -236,7 +242,7 @@ TEST(AirTables, OfASunThatHasSetHaveAllLightInOneTable) {
 
 TEST(AirTables, OfThreeWavelengthsLeaveTheFourthBandDark) {
   const SolvedAir air = tests::SolvedAsClearAir(MediumPreset("bruneton2017"));
-  const AirTables tables = TablesOf(air, EyeUnder(2.0, 30.0), AirQuality::kFirst);
+  const AirTables tables = TablesOf(air, tests::EyeUnderSun(2.0, 30.0), AirQuality::kFirst);
   for (const glm::vec4& texel : tables.sky.texel) ASSERT_EQ(texel.w, 0.0F);
   EXPECT_GT(tables.sky.At(0, 0).x, 0.0F);
 }

@@ -63,7 +63,7 @@ TEST(LegendreCoefficients, OfEveryKindAreTheIntegralsToOneInAMillion) {
       {.kind = kSchlick, .g = 0.8},
       {.kind = kSchlick, .g = -0.9},
       {.kind = kDraine, .g = -0.6, .alpha = 30.0},
-      FogPhase(4.0)};
+      DropletPhase(4.0)};
   constexpr int kDegree = tests::ScaledDown(170, 40);
   for (const PhaseFunction& phase : phases) {
     const std::vector<double> chi = LegendreCoefficients(phase, kDegree);

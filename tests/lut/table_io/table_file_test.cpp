@@ -250,7 +250,8 @@ TEST_F(TableFile, EveryMediumComesBackFromItsText) {
        .g = 0.7,
        .g_back = -0.3,
        .back_weight = 0.1},
-        PhaseFunction{.kind = PhaseKind::kDraine, .g = 0.7, .alpha = 1.0 / 3.0}, FogPhase(10.0)}) {
+        PhaseFunction{.kind = PhaseKind::kDraine, .g = 0.7, .alpha = 1.0 / 3.0},
+        DropletPhase(10.0)}) {
     media.push_back(MediumPreset("earth"));
     media.back().mie_phase = {phase};
   }

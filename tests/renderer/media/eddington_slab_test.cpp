@@ -179,7 +179,7 @@ double WorstFlux(double mu0) {
   double worst = 0.0;
   for (const double depth : {0.3, 1.0, 4.0, 16.0}) {
     for (const double albedo : {0.9, 1.0}) {
-      const Slab slab{depth, albedo, 0.2, mu0, FogPhase(12.0)};
+      const Slab slab{depth, albedo, 0.2, mu0, DropletPhase(12.0)};
       const Fluxes traced = TracedFluxes(slab, 10000);
       const auto chi = LegendreCoefficients(slab.phase, 2);
       const EddingtonSlab fast({albedo, chi[1], chi[2]}, depth, 0.2, mu0);

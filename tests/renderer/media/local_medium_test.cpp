@@ -67,6 +67,12 @@ class GlowingSheet final : public LocalMedium {
       ++sheet_.rays_;
       return std::make_unique<OnOneRay>(sheet_);
     }
+    void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
+                         Bands<double>& depth) const override {
+      const double column = sheet_.Column(point, to_disk, INFINITY);
+      for (std::size_t band = 0; band < depth.count; ++band)
+        depth[band] += column * sheet_.optics().extinction_per_m[band];
+    }
 
    private:
     const GlowingSheet& sheet_;
@@ -120,6 +126,17 @@ TEST(LocalMedium, AnyKindIsMarchedThroughItsInterface) {
                 1e-3)
         << "emission over extinction, times the opacity; the air changes by 1e-4 within 1 m";
     EXPECT_NEAR(static_cast<double>(light.transmittance[band]), std::exp(-0.5), 1e-6);
+  }
+}
+
+TEST(LocalMedium, AnyKindCastsItsShadowThroughItsInterface) {
+  const NightStage stage;
+  const MediaLight lit = stage.Lit({std::make_shared<const GlowingSheet>(0.5, 3.0)});
+  const BandLight behind = lit.BeamLeft(kOrigin, {0.0, 1.0, 0.0});
+  const BandLight beside = lit.BeamLeft(kOrigin, {0.0, -1.0, 0.0});
+  for (std::size_t band = 0; band < 3; ++band) {
+    EXPECT_NEAR(static_cast<double>(behind[band]), std::exp(-0.5), 1e-6);
+    EXPECT_EQ(beside[band], 1.0F);
   }
 }
 

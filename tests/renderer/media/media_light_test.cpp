@@ -182,7 +182,7 @@ TEST(MediaLight, TwoVolumesDimLightOneAfterTheOther) {
   };
   const auto low = box_at(60.0, 0.02), high = box_at(200.0, 0.03);
   const auto left = [](const MediaList& media) {
-    return TheStage().Lit(media).SunLeft(glm::dvec3(0.0), kToSun);
+    return TheStage().Lit(media).BeamLeft(glm::dvec3(0.0), kToSun);
   };
   const BandLight product = left({low}) * left({high});
   const BandLight both = left({low, high}), swapped = left({high, low});
@@ -194,7 +194,7 @@ TEST(MediaLight, TwoVolumesDimLightOneAfterTheOther) {
 }
 
 std::shared_ptr<const ExponentialLayer> FogMedium(double extinction, double scale_height) {
-  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), FogPhase(12.0)};
+  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), DropletPhase(12.0)};
   for (std::size_t band = 0; band < 3; ++band) {
     optics.extinction_per_m[band] = optics.scattering_per_m[band] = extinction;
   }
@@ -227,7 +227,7 @@ TEST(MediaLight, WhiteFogOverBlackGroundConservesEnergy) {
   const BandLight sky = over_black.multiple_scattering().SkyIrradiance(0.0, mu_s);
   const SkyThroughMedia below = lit.SkyOnSurface(0.0, 1.0);
   const SkyThroughMedia above = lit.SkyOnSurface(5e4, -1.0);
-  const BandLight beam = lit.SunLeft({0.0, 0.0, 0.0}, kToSun);
+  const BandLight beam = lit.BeamLeft({0.0, 0.0, 0.0}, kToSun);
   for (std::size_t band = 0; band < 3; ++band) {
     const double in = mu_s * static_cast<double>(sun[band]) + static_cast<double>(sky[band]);
     const double out =
@@ -360,7 +360,7 @@ Scene WithoutVolume() {
   return scene;
 }
 MediumLayer FogIn(double extinction_per_m, double scale_height_m, double albedo = 1.0) {
-  return {extinction_per_m, scale_height_m, 0.0, albedo, FogPhase(12.0)};
+  return {extinction_per_m, scale_height_m, 0.0, albedo, DropletPhase(12.0)};
 }
 Image Rendered(const Scene& scene, const UtcTime& instant,
                const RenderSettings& settings = kSmallMedia) {

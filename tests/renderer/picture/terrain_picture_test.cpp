@@ -127,7 +127,7 @@ TEST_F(Valley, HasTheSameBytesForAnyNumberOfThreads) {
   // The picture has a lake, shafts, fog, smoke and a lamp, and a moving camera with a lens.
   Scene scene = ValleyScene();
   scene.ground.sea_level_m = 20.0;
-  scene.layers = {MediumLayer{0.004, 40.0, 0.0, 1.0, FogPhase(12.0)}};
+  scene.layers = {MediumLayer{0.004, 40.0, 0.0, 1.0, DropletPhase(12.0)}};
   Volume& smoke = scene.volumes.emplace_back();
   smoke.place = scene.place;
   smoke.height = {100.0, false};

@@ -168,7 +168,7 @@ radius_m = 0.2
   EXPECT_DOUBLE_EQ(scene.layers[0].extinction_per_m, 0.01)
       << "3.912 optical depths are the visibility";
   EXPECT_DOUBLE_EQ(scene.layers[0].scale_height_m, 30.0);
-  EXPECT_EQ(scene.layers[0].phase, FogPhase(10.0));
+  EXPECT_EQ(scene.layers[0].phase, DropletPhase(10.0));
   ASSERT_EQ(scene.lights.size(), 1U);
   EXPECT_EQ(scene.lights[0].ies, "folder/lamp.ies");
   EXPECT_EQ(scene.lights[0].intensity_cd, std::nullopt) << "the file says it";
@@ -211,7 +211,7 @@ extinction_per_m = 0.1
   EXPECT_EQ(bank.height, (Height{4.0, true}));
   EXPECT_DOUBLE_EQ(bank.scale_height_m.value(), 25.0);
   EXPECT_NEAR(bank.extinction_per_m.at(0), 0.01, 1e-12) << "3.912 optical depths";
-  EXPECT_EQ(bank.phase, FogPhase(15.0)) << "drops when nothing is said";
+  EXPECT_EQ(bank.phase, DropletPhase(15.0)) << "drops when nothing is said";
   const Volume& plume = scene.volumes[1];
   EXPECT_EQ(plume.height, (Height{1200.0, false}));
   EXPECT_EQ(plume.grid, std::filesystem::path("folder/smoke.raw"));

@@ -718,7 +718,7 @@ TEST(Manifest, EveryMemberOfTheTablesOfFieldsIsRecorded) {
   ExpectRecorded(CameraFields(), scene, [](Scene& of) -> Camera& { return of.camera; });
   ExpectRecorded(GroundFields(), scene, [](Scene& of) -> GroundCover& { return of.ground; });
   ExpectRecorded(LightFields(), scene, [](Scene& of) -> Light& { return of.lights[0]; });
-  ExpectRecorded(FogFields(), scene, [](Scene& of) -> MediumLayer& { return of.layers.front(); });
+  ExpectRecorded(LayerFields(), scene, [](Scene& of) -> MediumLayer& { return of.layers.front(); });
   ExpectRecorded(VolumeFields(), scene, [](Scene& of) -> Volume& { return of.volumes[0]; });
 }
 

@@ -22,18 +22,22 @@ using AirTexturesOnGpu = tests::Headless;
 constexpr int kFirstUnit = 3;
 constexpr GLuint kBinding = 5;
 
-/// Tables on both processors, and an eye whose sun stands in the south west.
+/// An eye whose sun stands in the south west.
+EyeUnderLight EyeUnderSouthWest(double altitude_m, double mu_s) {
+  const double sine = std::sqrt((1.0 - mu_s) * (1.0 + mu_s));
+  return {altitude_m, Unrefracted({-0.6 * sine, -0.8 * sine, mu_s})};
+}
+
+/// Tables on both processors for such an eye.
 struct BothTables {
   BothTables(double altitude_m, double mu_s)
       : medium(MakeMediumTables(tests::Earth())),
-        tables(MakeAirTables(tests::Earth(), medium, {altitude_m, mu_s},
+        tables(MakeAirTables(tests::Earth(), medium, EyeUnderSouthWest(altitude_m, mu_s),
                              AirTablesSizeOf(AirQuality::kLow, altitude_m))),
         reading(tables) {
     textures.Upload(medium);
     textures.Upload(tables);
-    const double sine = std::sqrt((1.0 - mu_s) * (1.0 + mu_s));
-    const glm::dvec3 sun(-0.6 * sine, -0.8 * sine, mu_s);
-    textures.SetView(altitude_m, {sun, sun});
+    textures.SetView(altitude_m, tables.eye.light);
   }
 
   /// Unit vector, by the angle over the horizon and the azimuth from the sun's.
@@ -186,13 +190,10 @@ TEST_F(AirTexturesOnGpu, WaysAreThoseOfTheProcessor) {
 
 TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSun) {
   BothTables both(1500.0, 0.1);
-  const AirEye moved{1600.0, 0.08};
-  const double sine = std::sqrt((1.0 - moved.mu_s) * (1.0 + moved.mu_s));
-  const glm::dvec3 sun(-0.6 * sine, -0.8 * sine, moved.mu_s);
-  both.textures.SetView(moved.altitude_m, {sun, sun});
+  const EyeUnderLight moved = EyeUnderSouthWest(1600.0, 0.08);
+  both.textures.SetView(moved.altitude_m, moved.light);
   const tests::AirReading reading(both.tables, moved);
-  const AirMap map(tests::Earth().medium(), moved.altitude_m, moved.ceiling_m,
-                   both.tables.map.twilight_fall);
+  const AirMap map(tests::Earth().medium(), moved.altitude_m, both.tables.map.twilight_fall);
   std::vector<tests::Arguments<float>> points;
   const std::vector<ViewOfAir> looks = Looks(map, map.sky_range);
   for (const ViewOfAir& look : looks) {

@@ -60,7 +60,7 @@ Scene Night(double eye_height_m, double fog_per_m, double fog_height_m) {
     fog.extinction_per_m = fog_per_m;
     fog.scale_height_m = fog_height_m;
     fog.base_height_m = 0.0;
-    fog.phase = FogPhase(12.0);
+    fog.phase = DropletPhase(12.0);
     scene.layers = {fog};
   }
   return scene;
@@ -522,7 +522,7 @@ Scene Runway() {
   fog.extinction_per_m = 0.004;
   fog.scale_height_m = 25.0;
   fog.base_height_m = 0.0;
-  fog.phase = FogPhase(12.0);
+  fog.phase = DropletPhase(12.0);
   scene.layers = {fog};
   return scene;
 }

@@ -558,7 +558,7 @@ TEST_F(SkyPainterTest, FogIsTheRenderersAndShadedByMountains) {
     view.scene.layers[0].extinction_per_m = 3.0 / c.visibility_m;
     view.scene.layers[0].scale_height_m = c.scale_height_m;
     view.scene.layers[0].base_height_m = c.base_height_m;
-    view.scene.layers[0].phase = FogPhase(14.0);
+    view.scene.layers[0].phase = DropletPhase(14.0);
     const int samples = tests::ScaledDown(kPictureSamples, 16);
     ExpectWithin(BothPrograms(view.scene, view.instant, samples).Difference(view), c.bounds,
                  "light of the fog and its shade are maps, and light of the air before it is "
@@ -835,7 +835,7 @@ TEST_F(BarePlanet, IsSeenThroughFogAsTheRenderersIs) {
     MediumLayer fog;
     fog.extinction_per_m = 3.912 / 300.0;
     fog.scale_height_m = scale_height_m;
-    fog.phase = FogPhase(12.0);
+    fog.phase = DropletPhase(12.0);
     scene.layers = {fog};
     ExpectTheRenderers(scene, {"2026-06-21T06:30:00Z"});
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Provides the light of sun and sky in a scene's fog on the GPU: FogPainter, which uploads a FogMap
-// (renderer/media/fog_map.h) for fog/light.glsl, and SceneFog, which computes maps for a moving
-// eye and sun beside drawing.
+// Provides the light of sun and sky in a layer of a scene on the GPU: LayerPainter, which uploads a
+// LayerMap (renderer/media/layer_map.h) for media/layer.glsl, and SceneLayer, which computes maps for
+// a moving eye and sun beside drawing.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -13,7 +13,7 @@
 #include "atmosphere/base/async_value.h"
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/distant_light.h"
-#include "renderer/media/fog_map.h"
+#include "renderer/media/layer_map.h"
 #include "renderer/media/local_media.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_context.h"
@@ -22,18 +22,15 @@
 
 namespace alpenglow::viewer {
 
-/// Mirrors the uniform block `Fog` of fog/light.glsl.
-struct FogBlock {
-  glm::vec4 layer, eye, sun, phase, map_size, other_sun;
+/// Mirrors the uniform block `Layer` of media/layer.glsl.
+struct LayerBlock {
+  glm::vec4 shape, eye, sun, phase, map_size, other_sun;
 };
-static_assert(sizeof(FogBlock) == 6 * sizeof(glm::vec4));
+static_assert(sizeof(LayerBlock) == 6 * sizeof(glm::vec4));
 
 /// Returns texts for a fragment stage, which follow SharedTexts(): MediaTo(direction, distance_km)
-/// and the rest of fog/light.glsl. @param kind  kind of the fog's phase function.
-[[nodiscard]] std::vector<ShaderPiece> FogTexts(PhaseKind kind);
-
-/// Returns texts with these functions for scenes without fog.
-[[nodiscard]] std::vector<ShaderPiece> NoFogTexts();
+/// and the rest of media/layer.glsl. @param kind  of the layer's phase function.
+[[nodiscard]] std::vector<ShaderPiece> LayerTexts(PhaseKind kind);
 
 /// Binding points of the data of media.
 struct MediaUnits {
@@ -41,33 +38,30 @@ struct MediaUnits {
   int first = 13;  // first of four texture units: two for each light of the sky
 };
 
-class FogPainter {
+class LayerPainter {
  public:
-  explicit FogPainter(const MediaUnits& units) : units_(units) {}
+  explicit LayerPainter(const MediaUnits& units) : units_(units) {}
   void Connect(const ShaderProgram& program) const;
   /// Uploads a map.
-  void Upload(const FogMap& map);
-  /// Binds everything for the next draw call of a program of FogTexts(). @param map  the last
-  /// uploaded map.
-  void Bind(const FogMap& map, const FogView& now) const;
-  /// Binds the fog for a program with TWO_LIGHTS.
-  /// @param other  the painter of the second light, whose map has the same size.
-  void Bind(const FogMap& map, const FogView& now, const FogPainter& other,
-            const FogView& other_now) const;
+  void Upload(const LayerMap& map);
+  /// Binds everything for the next draw call of a program of LayerTexts().
+  /// @param map  the last uploaded map.
+  /// @param other  the painter of the second light, whose map has the same size; this one if there
+  ///     is one light.
+  void Bind(const LayerMap& map, const EyeUnderLight& now, const LayerPainter& other,
+            const EyeUnderLight& other_now) const;
 
  private:
-  void Bind(const FogBlock& block) const;
-
   MediaUnits units_;
   GlBuffer block_;
   GlTexture light_, surface_;
 };
 
-class SceneFog {
+class SceneLayer {
  public:
-  /// @param media  media with a layer, the fog.
-  SceneFog(std::shared_ptr<const LocalMedia> media, const LayerMapSize& size,
-           const MediaUnits& units);
+  /// @param media  media with a layer.
+  SceneLayer(std::shared_ptr<const LocalMedia> media, const LayerMapSize& size,
+             const MediaUnits& units);
 
   /// Sets the size of maps from the next Follow or WaitUntilReady on.
   void SetSize(const LayerMapSize& size);
@@ -81,16 +75,15 @@ class SceneFog {
   void WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
                       const DistantLight& light);
 
-  /// Returns the extinction of the fog at an altitude [1/m].
+  /// Returns the extinction of the layer at an altitude [1/m].
   [[nodiscard]] double ExtinctionAt(double altitude_m) const;
 
-  /// Connects a program of FogTexts() with the bound data.
+  /// Connects a program of LayerTexts() with the bound data.
   void Connect(const ShaderProgram& program) const { painter_.Connect(program); }
   /// Binds everything for the next draw call of such a program. Call it after Follow or
   /// WaitUntilReady.
-  void Bind(const CameraPose& eye, const DistantLight& light) const;
-  /// Binds the fog for a program with TWO_LIGHTS. @param other  the fog lit by the second light.
-  void Bind(const CameraPose& eye, const DistantLight& light, const SceneFog& other,
+  /// @param other  the layer lit by the second light; this one if there is one light.
+  void Bind(const CameraPose& eye, const DistantLight& light, const SceneLayer& other,
             const DistantLight& other_light) const;
 
  private:
@@ -98,9 +91,9 @@ class SceneFog {
 
   std::shared_ptr<const LocalMedia> media_;
   LayerMapSize size_;
-  FogPainter painter_;
+  LayerPainter painter_;
   std::shared_ptr<const SolvedAir> air_;  // medium of the maps; null: no map of this size yet
-  std::optional<AsyncValue<FogView, FogMap>> maps_;
+  std::optional<AsyncValue<EyeUnderLight, LayerMap>> maps_;
 };
 
 }  // namespace alpenglow::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of sun and sky in fog on the graphics card, against the renderer's.
+// Light of sun and sky in a layer on the graphics card, against the renderer's.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,13 +15,13 @@
 #include "tests/fixtures/solved_media.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/lamps/fog.h"
+#include "viewer/media/scene_layer.h"
 
 namespace alpenglow::viewer {
 namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
-constexpr double kFogSunRadius_rad = 0.00465;
+constexpr double kLayerSunRadius_rad = 0.00465;
 
 glm::dvec3 ToSun(double elevation_rad) {
   return {0.6 * std::cos(elevation_rad), 0.8 * std::cos(elevation_rad), std::sin(elevation_rad)};
@@ -45,7 +45,7 @@ struct Stage {
     Lighting at =
         LightingOf(sun, UtcTime{60000, 0.0}, PlaceFromRadians(0.8, 0.0, 0.0), scene.medium);
     at.source.direction = Unrefracted(to_sun);
-    at.source.radius_rad = kFogSunRadius_rad;
+    at.source.radius_rad = kLayerSunRadius_rad;
     return at;
   }
 };
@@ -55,9 +55,9 @@ const Stage& TheStage() {
   return kStage;
 }
 
-std::shared_ptr<const ExponentialLayer> FogOf(double per_m, double height_m, double base_m) {
+std::shared_ptr<const ExponentialLayer> DropletsOf(double per_m, double height_m, double base_m) {
   const Medium& medium = TheStage().scene.medium;
-  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), FogPhase(14.0)};
+  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), DropletPhase(14.0)};
   for (std::size_t band = 0; band < 3; ++band) {
     optics.extinction_per_m[band] = optics.scattering_per_m[band] = per_m;
   }
@@ -67,15 +67,16 @@ std::shared_ptr<const ExponentialLayer> FogOf(double per_m, double height_m, dou
       optics);
 }
 
-/// A fog before an eye, as the renderer has it and as the graphics card does.
-struct BothFogs {
-  BothFogs(const std::shared_ptr<const ExponentialLayer>& fog, double eye_m,
-           const glm::dvec3& to_sun = kToSun)
+/// A layer before an eye, as the renderer has it and as the graphics card does.
+struct BothLayers {
+  BothLayers(const std::shared_ptr<const ExponentialLayer>& layer, double eye_m,
+             const glm::dvec3& to_sun = kToSun)
       : eye(0.0, 0.0, eye_m),
-        media({fog}, 3),
+        media({layer}, 3),
         light(TheStage().Under(to_sun)),
         renderer(media, TheStage().geometry, TheStage().air, light),
-        map(MakeFogMap(*fog, TheStage().air, {eye_m, Unrefracted(to_sun), kFogSunRadius_rad})),
+        map(MakeLayerMap(*layer, TheStage().air,
+                         {eye_m, Unrefracted(to_sun), kLayerSunRadius_rad})),
         painter({}) {
     painter.Upload(map);
   }
@@ -83,10 +84,10 @@ struct BothFogs {
   [[nodiscard]] std::vector<float> OnGpu(const std::string& expression,
                                          const std::vector<tests::Arguments<float>>& points) const {
     std::vector<ShaderPiece> pieces = SharedTexts();
-    for (const ShaderPiece& piece : FogTexts(map.phase.kind)) pieces.push_back(piece);
+    for (const ShaderPiece& piece : LayerTexts(map.phase.kind)) pieces.push_back(piece);
     return tests::EvaluateOnGpu(pieces, expression, points, [&](const ShaderProgram& program) {
       painter.Connect(program);
-      painter.Bind(map, map.view);
+      painter.Bind(map, map.eye, painter, map.eye);
     });
   }
 
@@ -94,12 +95,12 @@ struct BothFogs {
   LocalMedia media;
   Lighting light;
   MediaLight renderer;
-  FogMap map;
-  FogPainter painter;
+  LayerMap map;
+  LayerPainter painter;
 };
 
 /// Directions of a picture and lengths [km]: to the sky, to the planet, or to somewhere before.
-std::vector<tests::Arguments<float>> Rays(const BothFogs& both, int count) {
+std::vector<tests::Arguments<float>> Rays(const BothLayers& both, int count) {
   std::mt19937 random(5);
   const auto uniform = [&](double low, double high) {
     return std::uniform_real_distribution<>(low, high)(random);
@@ -119,12 +120,12 @@ std::vector<tests::Arguments<float>> Rays(const BothFogs& both, int count) {
   return rays;
 }
 
-struct FogDeviation {
+struct LayerDeviation {
   double mean, p99, of_transmittance;
 };
 
 // Deviations count where the radiance is at least a tenth of the brightest.
-FogDeviation CompareFog(const BothFogs& both) {
+LayerDeviation Compared(const BothLayers& both) {
   const auto rays = Rays(both, tests::ScaledDown(300, 120));
   const std::vector<float> gpu =
       both.OnGpu("MediaTo(vec3(a[0], a[1], a[2]), a[3]).radiance[1]", rays);
@@ -149,67 +150,67 @@ FogDeviation CompareFog(const BothFogs& both) {
           largest};
 }
 
-using FogOnTheCard = tests::Headless;
+using LayerOnTheCard = tests::Headless;
 
-TEST_F(FogOnTheCard, IsThatOfTheRendererWhereverItLies) {
+TEST_F(LayerOnTheCard, IsThatOfTheRendererWhereverItLies) {
   struct Case {
     const char* where;
-    std::shared_ptr<const ExponentialLayer> fog;
+    std::shared_ptr<const ExponentialLayer> layer;
     double eye_m;
   };
-  for (const Case& c : {Case{"around the eye", FogOf(0.02, 60.0, 0.0), 10.0},
-                        Case{"under the eye", FogOf(0.02, 60.0, 0.0), 500.0},
-                        Case{"over the eye", FogOf(0.002, 80.0, 300.0), 250.0},
-                        Case{"without an end above", FogOf(1e-4, kEndless, 0.0), 100.0}}) {
-    const FogDeviation deviation = CompareFog(BothFogs(c.fog, c.eye_m));
+  for (const Case& c : {Case{"around the eye", DropletsOf(0.02, 60.0, 0.0), 10.0},
+                        Case{"under the eye", DropletsOf(0.02, 60.0, 0.0), 500.0},
+                        Case{"over the eye", DropletsOf(0.002, 80.0, 300.0), 250.0},
+                        Case{"without an end above", DropletsOf(1e-4, kEndless, 0.0), 100.0}}) {
+    const LayerDeviation deviation = Compared(BothLayers(c.layer, c.eye_m));
     EXPECT_LT(deviation.mean, 2e-3) << c.where;
     EXPECT_LT(deviation.p99, 0.02) << c.where;
     EXPECT_LT(deviation.of_transmittance, 2e-3) << c.where << ": columns of thin layers in float";
   }
 }
 
-TEST_F(FogOnTheCard, IsThatOfTheRendererAtSunsetAndAfter) {
+TEST_F(LayerOnTheCard, IsThatOfTheRendererAtSunsetAndAfter) {
   for (const double elevation_rad : {0.0, -0.05}) {
-    const FogDeviation deviation =
-        CompareFog(BothFogs(FogOf(0.02, 60.0, 0.0), 10.0, ToSun(elevation_rad)));
-    EXPECT_LT(deviation.mean, 5e-3) << "light falls by e every few metres into the fog";
+    const LayerDeviation deviation =
+        Compared(BothLayers(DropletsOf(0.02, 60.0, 0.0), 10.0, ToSun(elevation_rad)));
+    EXPECT_LT(deviation.mean, 5e-3) << "light falls by e every few metres into the layer";
     EXPECT_LT(deviation.p99, 0.05);
   }
 }
 
-TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
-  const BothFogs both(FogOf(0.02, 60.0, 0.0), 10.0);
+TEST_F(LayerOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
+  const BothLayers both(DropletsOf(0.02, 60.0, 0.0), 10.0);
   std::vector<tests::Arguments<float>> points;
   for (const double altitude : {1.0, 20.0, 60.0, 150.0, 400.0}) {
     for (const double cos_up : {1.0, 0.9, 0.5}) {
       points.push_back({static_cast<float>(altitude / 1000.0), static_cast<float>(cos_up)});
     }
   }
-  const std::vector<float> sun = both.OnGpu(
-      "SunLeftByMedia(a[0], " + std::to_string(both.map.view.light.seen.z) + ")", points);
+  const std::vector<float> sun =
+      both.OnGpu("SunLeftByMedia(a[0], " + std::to_string(both.map.eye.light.seen.z) + ")", points);
   const std::vector<float> sky = both.OnGpu("SkyLeftByMedia(a[0])", points);
   const std::vector<float> added = both.OnGpu("MediaOnSurface(a[0], a[1])[1]", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double altitude = 1000.0 * double{points[i][0]};
     const SkyThroughMedia truth = both.renderer.SkyOnSurface(altitude, double{points[i][1]});
-    EXPECT_NEAR(double{sun[i]}, double{both.renderer.SunLeft({0.0, 0.0, altitude}, kToSun)[1]},
+    EXPECT_NEAR(double{sun[i]}, double{both.renderer.BeamLeft({0.0, 0.0, altitude}, kToSun)[1]},
                 1e-3);
     EXPECT_NEAR(double{sky[i]}, double{truth.left[1]}, 1e-4);
     EXPECT_NEAR(double{added[i]}, double{truth.added[1]}, 3e-3);
   }
 }
 
-TEST(FogMap, ServesWhileTheEyeStandsAndNotWhenItHasRisen) {
-  const FogView made{10.0, Unrefracted(kToSun), kFogSunRadius_rad};
-  EXPECT_TRUE(Serves(made, {12.0, Unrefracted(kToSun), kFogSunRadius_rad}, 60.0));
-  EXPECT_FALSE(Serves(made, {100.0, Unrefracted(kToSun), kFogSunRadius_rad}, 60.0));
+TEST(LayerMap, ServesWhileTheEyeStandsAndNotWhenItHasRisen) {
+  const EyeUnderLight made{10.0, Unrefracted(kToSun), kLayerSunRadius_rad};
+  EXPECT_TRUE(Serves(made, {12.0, Unrefracted(kToSun), kLayerSunRadius_rad}, 60.0));
+  EXPECT_FALSE(Serves(made, {100.0, Unrefracted(kToSun), kLayerSunRadius_rad}, 60.0));
 }
 
-TEST_F(FogOnTheCard, ReachesADepthWhereItHasThatDepthForAnyEye) {
+TEST_F(LayerOnTheCard, ReachesADepthWhereItHasThatDepthForAnyEye) {
   const std::string ray = "vec3(a[0], a[1], a[2])";
   const std::string whole = "MediaDepthTo(" + ray + ", a[3])";
   for (const double eye_m : {10.0, 2e3, 2e4, 4e5, 3.6e7}) {
-    const BothFogs both(FogOf(0.003, 100.0, 0.0), eye_m);
+    const BothLayers both(DropletsOf(0.003, 100.0, 0.0), eye_m);
     const double radius = TheStage().scene.medium.planet_radius_m;
     // Directions to ground in the distance, to the nadir and a fifth of the way to the horizon.
     std::vector<tests::Arguments<float>> rays;
@@ -234,19 +235,20 @@ TEST_F(FogOnTheCard, ReachesADepthWhereItHasThatDepthForAnyEye) {
 
 /// The shader's sum of a light that rises by 1 a kilometre of the ray (x, y, z) until its end, 20
 /// km at most.
-std::string LightInFog() {
+std::string LightInLayer() {
   const std::string to = "MediaStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0))";
   const std::string km = to + ".distance_km";
   return "dot(" + to + ".weight, " + km + ") + MediaRest(" + to + ", vec4(" + km + ".w), vec4(" +
          km + ".z), vec4(" + km + ".y)).x";
 }
 
-TEST_F(FogOnTheCard, StretchesDimALightThatRisesEvenlyAsTheFogDoes) {
-  for (const std::shared_ptr<const ExponentialLayer>& fog :
-       {FogOf(0.002, 80.0, 0.0), FogOf(0.013, std::numeric_limits<double>::infinity(), 0.0)}) {
-    const BothFogs both(fog, 10.0);
+TEST_F(LayerOnTheCard, StretchesDimALightThatRisesEvenlyAsTheLayerDoes) {
+  for (const std::shared_ptr<const ExponentialLayer>& layer :
+       {DropletsOf(0.002, 80.0, 0.0),
+        DropletsOf(0.013, std::numeric_limits<double>::infinity(), 0.0)}) {
+    const BothLayers both(layer, 10.0);
     const auto rays = Rays(both, tests::ScaledDown(60, 30));
-    const std::vector<float> gpu = both.OnGpu(LightInFog(), rays);
+    const std::vector<float> gpu = both.OnGpu(LightInLayer(), rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const glm::dvec3 way = glm::normalize(glm::dvec3(rays[i][0], rays[i][1], rays[i][2]));
       const double length = 1000.0 * std::min(double{rays[i][3]}, 20.0);

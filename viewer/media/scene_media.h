@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Provides the media of a scene on the GPU: the shader texts that return their light, and their data
-// under each light of the sky. Of all media, the first layer is drawn (fog.h). Without a layer, the
+// under each light of the sky. Of all media, the first layer is drawn (scene_layer.h). Without a layer, the
 // texts return no light, and nothing is computed or bound.
 #pragma once
 
@@ -10,12 +10,12 @@
 
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/distant_light.h"
-#include "renderer/media/fog_map.h"
+#include "renderer/media/layer_map.h"
 #include "renderer/media/local_media.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/shader.h"
-#include "viewer/lamps/fog.h"
 #include "viewer/layer.h"
+#include "viewer/media/scene_layer.h"
 
 namespace alpenglow::viewer {
 
@@ -29,7 +29,7 @@ struct MediaKind {
 };
 
 /// Returns texts for a fragment stage, which follow SharedTexts(): MediaTo(direction, distance_km)
-/// and the rest of fog/light.glsl.
+/// and the rest of media/layer.glsl.
 [[nodiscard]] std::vector<ShaderPiece> MediaTexts(const MediaKind& kind);
 
 class SceneMedia {
@@ -57,10 +57,10 @@ class SceneMedia {
   void Bind(const CameraPose& eye, const DistantLight& first, const DistantLight& second) const;
 
  private:
-  [[nodiscard]] const SceneFog& Under(LightSource source) const;
+  [[nodiscard]] const SceneLayer& Under(LightSource source) const;
 
   std::shared_ptr<const LocalMedia> media_;
-  std::optional<SceneFog> by_sun_, by_moon_;  // both or none
+  std::optional<SceneLayer> by_sun_, by_moon_;  // both or none
 };
 
 }  // namespace alpenglow::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/media/fog_map.h"
+#include "renderer/media/layer_map.h"
 
 #include <algorithm>
 #include <array>
@@ -31,20 +31,20 @@ glm::vec4 InFloats(const BandLight& light) {
 /// The four quantities, summed from the eye on.
 using Sums = std::array<glm::vec4, kQuantities>;
 
-class FogMarch {
+class LayerMarch {
  public:
-  FogMarch(const ExponentialLayer& fog, const SolvedAir& air, const FogView& view)
-      : fog_(fog),
+  LayerMarch(const ExponentialLayer& layer, const SolvedAir& air, const EyeUnderLight& under)
+      : layer_(layer),
         air_(air),
-        view_(view),
+        under_(under),
         radius_m_(air.medium().planet_radius_m),
-        eye_(0.0, 0.0, std::max(view.altitude_m, 0.0)),
-        light_(fog, air.multiple_scattering(), view.light,
-               SunInAir({0.0, 0.0, fog.HeadAltitude()})) {}
+        eye_(0.0, 0.0, std::max(under.altitude_m, 0.0)),
+        light_(layer, air.multiple_scattering(), under.light,
+               SunInAir({0.0, 0.0, layer.HeadAltitude()})) {}
 
   [[nodiscard]] const LayerLight& light() const { return light_; }
 
-  /// Returns the sums at fractions i / (depths - 1) of the light that the fog removes along the
+  /// Returns the sums at fractions i / (depths - 1) of the light that the layer removes along the
   /// whole ray.
   [[nodiscard]] std::vector<Sums> Along(const glm::dvec3& direction, int depths) const {
     const std::vector<Step> steps = StepsOf(direction);
@@ -80,15 +80,15 @@ class FogMarch {
  private:
   struct Step {
     double middle_m;
-    double taken;  // fraction of light that the fog removes up to the end of this step
+    double taken;  // fraction of light that the layer removes up to the end of this step
   };
 
   [[nodiscard]] BandLight SunInAir(const glm::dvec3& point) const {
     const double altitude = std::max(AltitudeOverSphere(point, radius_m_), 0.0);
     const glm::dvec3 up = glm::normalize(point + glm::dvec3(0.0, 0.0, radius_m_));
-    const double mu_s = std::clamp(glm::dot(up, view_.light.seen), -1.0, 1.0);
+    const double mu_s = std::clamp(glm::dot(up, under_.light.seen), -1.0, 1.0);
     const VisibleDisk disk =
-        DiskOverHorizon(mu_s, shared::HorizonCosine(altitude, radius_m_), view_.radius_rad);
+        DiskOverHorizon(mu_s, shared::HorizonCosine(altitude, radius_m_), under_.radius_rad);
     if (disk.fraction <= 0.0) return BandLight(air_.bands());
     return static_cast<float>(disk.fraction) * air_.BeamLeft(altitude, disk.mu_s_effective);
   }
@@ -100,29 +100,29 @@ class FogMarch {
     return shared::DistanceDownTo(eye_.z, direction.z, 0.0, radius_m_);
   }
 
-  // Returns steps up to the distance at which the fog is opaque, so short that neither the light in
-  // the fog nor its density changes much within one.
+  // Returns steps up to the distance at which the layer is opaque, so short that neither the light in
+  // the layer nor its density changes much within one.
   [[nodiscard]] std::vector<Step> StepsOf(const glm::dvec3& direction) const {
     constexpr double kDepth = 0.1, kFall = 0.25, kOpaque = 12.0;
     constexpr double kShortest_m = 0.01;
-    const double extinction = fog_.optics().extinction_per_m[0];
+    const double extinction = layer_.optics().extinction_per_m[0];
     std::vector<Step> steps;
     double tau = 0.0;
-    for (const DensePiece& piece : fog_.PiecesAlong(eye_, direction, EndOf(direction))) {
+    for (const DensePiece& piece : layer_.PiecesAlong(eye_, direction, EndOf(direction))) {
       for (double t = piece.begin_m; t < piece.end_m && tau < kOpaque;) {
         const glm::dvec3 point = eye_ + t * direction;
         const double rise =
             glm::dot(direction, glm::normalize(point + glm::dvec3(0, 0, radius_m_)));
-        const double per_m = extinction * fog_.DensityAt(point);
-        const double h = fog_.scale_height_m();
+        const double per_m = extinction * layer_.DensityAt(point);
+        const double h = layer_.scale_height_m();
         const double by_fall =
             std::isinf(h) ? piece.end_m : kFall * h / std::max(std::abs(rise), 1e-3);
         double step = std::min({kDepth / per_m, by_fall, 0.05 * (piece.end_m - piece.begin_m)});
         step = std::min(std::max(step, kShortest_m), piece.end_m - t);
         const double middle = t + 0.5 * step;
         tau += step * extinction *
-               (fog_.DensityAt(point) + 4.0 * fog_.DensityAt(eye_ + middle * direction) +
-                fog_.DensityAt(eye_ + (t + step) * direction)) /
+               (layer_.DensityAt(point) + 4.0 * layer_.DensityAt(eye_ + middle * direction) +
+                layer_.DensityAt(eye_ + (t + step) * direction)) /
                6.0;
         steps.push_back({middle, -std::expm1(-tau)});
         t += step;
@@ -138,26 +138,26 @@ class FogMarch {
     const glm::dvec3 point = eye_ + step.middle_m * direction;
     const double altitude = AltitudeOverSphere(point, radius_m_);
     const double slant =
-        fog_.optics().extinction_per_m[0] * fog_.ColumnToSpace(point, view_.light.seen);
+        layer_.optics().extinction_per_m[0] * layer_.ColumnToSpace(point, under_.light.seen);
     const BandLight sun = SunInAir(point);
     BandLight all(sun.count), none(sun.count);
     std::fill_n(all.value.begin(), all.count, 1.0F);
     const LayerLight::Scattered glow = light_.At(look, altitude, none, all, slant);
     const auto direct = static_cast<float>(std::exp(-slant));
-    const auto scattered =
-        static_cast<float>(fog_.optics().scattering_per_m[0] / fog_.optics().extinction_per_m[0]);
+    const auto with_peak = static_cast<float>(std::exp(-light_.peak_scale() * slant));
+    const auto scattered = static_cast<float>(layer_.optics().scattering_per_m[0] /
+                                              layer_.optics().extinction_per_m[0]);
     ViewRay ray{eye_.z, direction.z, 0.0, 0.0};
     ray.length_m = step.middle_m;
     ray.passes_ground = true;
     const BandLight left = scattered * air_.single_scattering().TransmittanceAlong(ray);
-    return {InFloats(direct * (left * sun)),
-            InFloats((light_.BeamLeft(slant) - direct) * (left * sun)),
+    return {InFloats(direct * (left * sun)), InFloats((with_peak - direct) * (left * sun)),
             InFloats(left * glow.of_sun), InFloats(left * glow.of_sky)};
   }
 
-  const ExponentialLayer& fog_;
+  const ExponentialLayer& layer_;
   SolvedAir air_;
-  FogView view_;
+  EyeUnderLight under_;
   double radius_m_;
   glm::dvec3 eye_;
   LayerLight light_;
@@ -165,14 +165,14 @@ class FogMarch {
 
 // Returns the sine of the elevation for a position in [0, 1] on the axis, which is dense at the
 // horizontal.
-double FogElevationSine(double unit) {
+double ElevationSine(double unit) {
   const double root = 2.0 * unit - 1.0;
   return root * std::abs(root);
 }
 
-void AddRays(const FogMarch& march, FogMap& map) {
+void AddRays(const LayerMarch& march, LayerMap& map) {
   const LayerMapSize& size = map.size;
-  const double sun_azimuth = std::atan2(map.view.light.seen.y, map.view.light.seen.x);
+  const double sun_azimuth = std::atan2(map.eye.light.seen.y, map.eye.light.seen.x);
   const auto at = [&](int quantity, int depth, int azimuth, int elevation) {
     return static_cast<std::size_t>(
         ((quantity * size.depths + depth) * size.azimuths + azimuth) * size.elevations + elevation);
@@ -181,7 +181,7 @@ void AddRays(const FogMarch& march, FogMap& map) {
   for (int azimuth = 0; azimuth < size.azimuths; ++azimuth) {
     const double turn = sun_azimuth + kPi * azimuth / (size.azimuths - 1.0);
     for (int elevation = 0; elevation < size.elevations; ++elevation) {
-      const double sine = FogElevationSine(elevation / (size.elevations - 1.0));
+      const double sine = ElevationSine(elevation / (size.elevations - 1.0));
       const double cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
       const std::vector<Sums> nodes =
           march.Along({cosine * std::cos(turn), cosine * std::sin(turn), sine}, size.depths);
@@ -195,10 +195,10 @@ void AddRays(const FogMarch& march, FogMap& map) {
   }
 }
 
-void AddSurfaces(const FogMarch& march, const ExponentialLayer& layer, FogMap& map) {
-  map.on_surface.resize(2 * std::size_t{FogMap::kHeights});
-  for (int i = 0; i < FogMap::kHeights; ++i) {
-    const double share = std::pow(std::max(i / (FogMap::kHeights - 1.0), 1e-3), 4.0);
+void AddSurfaces(const LayerMarch& march, const ExponentialLayer& layer, LayerMap& map) {
+  map.on_surface.resize(2 * std::size_t{LayerMap::kHeights});
+  for (int i = 0; i < LayerMap::kHeights; ++i) {
+    const double share = std::pow(std::max(i / (LayerMap::kHeights - 1.0), 1e-3), 4.0);
     const double column = share * map.depth / map.extinction_per_m;
     const double altitude =
         std::isinf(layer.scale_height_m())
@@ -206,36 +206,36 @@ void AddSurfaces(const FogMarch& march, const ExponentialLayer& layer, FogMap& m
             : map.base_m - layer.scale_height_m() * std::log(column / layer.scale_height_m());
     const glm::vec4 level = InFloats(march.light().OnSurface(altitude, 1.0));
     map.on_surface[static_cast<std::size_t>(i)] = level;
-    map.on_surface[static_cast<std::size_t>(FogMap::kHeights + i)] =
+    map.on_surface[static_cast<std::size_t>(LayerMap::kHeights + i)] =
         InFloats(march.light().OnSurface(altitude, 0.0)) - level;
   }
 }
 
 }  // namespace
 
-FogMap MakeFogMap(const ExponentialLayer& fog, const SolvedAir& air, const FogView& view,
-                  const LayerMapSize& size) {
+LayerMap MakeLayerMap(const ExponentialLayer& layer, const SolvedAir& air,
+                      const EyeUnderLight& under, const LayerMapSize& size) {
   ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
-  const FogMarch march(fog, air, view);
-  const std::vector<double> chi = LegendreCoefficients(fog.optics().phase, 2);
-  FogMap map;
-  map.view = view;
+  const LayerMarch march(layer, air, under);
+  const std::vector<double> chi = LegendreCoefficients(layer.optics().phase, 2);
+  LayerMap map;
+  map.eye = under;
   map.size = size;
-  map.extinction_per_m = fog.optics().extinction_per_m[0];
-  map.scale_height_m = fog.scale_height_m();
-  map.base_m = fog.base_m();
+  map.extinction_per_m = layer.optics().extinction_per_m[0];
+  map.scale_height_m = layer.scale_height_m();
+  map.base_m = layer.base_m();
   map.top_m = air.medium().atmosphere_height_m;
   map.radius_m = air.medium().planet_radius_m;
-  map.depth = map.extinction_per_m * fog.ColumnAbove(fog.bottom_m());
-  map.peak_scale = -std::log(static_cast<double>(march.light().BeamLeft(1.0)));
-  map.phase = fog.optics().phase;
+  map.depth = map.extinction_per_m * layer.ColumnAbove(layer.bottom_m());
+  map.peak_scale = march.light().peak_scale();
+  map.phase = layer.optics().phase;
   map.broad_g = std::clamp(chi[1], -0.99, 0.99);
   AddRays(march, map);
-  AddSurfaces(march, fog, map);
+  AddSurfaces(march, layer, map);
   return map;
 }
 
-bool Serves(const FogView& made, const FogView& wanted, double scale_height_m) {
+bool Serves(const EyeUnderLight& made, const EyeUnderLight& wanted, double scale_height_m) {
   constexpr double kSun_rad = 0.1 * 3.14159265358979 / 180.0;
   const double step_m = 0.1 * std::min(scale_height_m, 1000.0);
   return std::abs(made.altitude_m - wanted.altitude_m) <= step_m &&

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The light in fog (LayerLight) summed along rays, for interpolation on the GPU. Values are per unit
-// solar irradiance. Along a ray they are relative to the fraction of light that the fog removes,
+// The light in a layer (LayerLight) summed along rays, for interpolation on the GPU. Values are per unit
+// solar irradiance. Along a ray they are relative to the fraction of light that the layer removes,
 //
-//   L(d) = (1 - T(d)) [p A + p' B + G + K],    T = exp(-tau(d)), of the fog alone
+//   L(d) = (1 - T(d)) [p A + p' B + G + K],    T = exp(-tau(d)), of the layer alone
 //
-// A is the light of the sun itself, scattered with the fog's phase function p; B is the light in
-// its forward peak, scattered with the lobe p'; G is the glow of the sun in the fog; K is the light
+// A is the light of the sun itself, scattered with the layer's phase function p; B is the light in
+// its forward peak, scattered with the lobe p'; G is the glow of the sun in the layer; K is the light
 // of the sky. Tables are over the sine of the ray's elevation, its azimuth from the sun and
 // (1 - T(d)) / (1 - T(end)), where the ray ends at the bare planet or in space. A, B and G are for
 // open ground: terrain does not shade them.
@@ -15,6 +15,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "lut/camera_tables/eye_under_light.h"
 #include "lut/multiple_scattering/solved_air.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/media/exponential_layer.h"
@@ -22,7 +23,7 @@
 namespace alpenglow::renderer {
 
 /// Resolution of a map. Its mean difference from MediaLight is 0.1 % by day and 0.5 % with the sun
-/// on the horizon, where light in fog decreases by a factor e every few metres (99 %: 2 % and 5 %;
+/// on the horizon, where light in the layer decreases by a factor e every few metres (99 %: 2 % and 5 %;
 /// kFineLayerMap: half of all these). The computation time is proportional to elevations times azimuths.
 struct LayerMapSize {
   int elevations = 128;  // even: half of them above the horizon
@@ -34,22 +35,14 @@ struct LayerMapSize {
 inline constexpr LayerMapSize kCoarseLayerMap{48, 12, 8};
 inline constexpr LayerMapSize kFineLayerMap{192, 24, 16};
 
-/// Eye of a map and the light over it, the sun or the moon, in the frame east, north, up at the eye,
-/// on the sphere of the air's medium.
-struct FogView {
-  double altitude_m = 0.0;
-  LightDirection light = Unrefracted({0.0, 0.0, 1.0});
-  double radius_rad = 0.0046;  // of its disk
-};
-
-/// Table of the light in fog. It is immutable and needs no GPU.
-struct FogMap {
-  FogView view;
+/// Table of the light in a layer. It is immutable and needs no GPU.
+struct LayerMap {
+  EyeUnderLight eye;
   LayerMapSize size;
   /// A, B, G and K in this order: [((quantity * depths + depth) * azimuths + azimuth) * elevations
   /// + elevation].
   std::vector<glm::vec4> light;
-  /// Irradiance of the fog's own light on level ground, and the additional irradiance on a vertical
+  /// Irradiance of the layer's own light on level ground, and the additional irradiance on a vertical
   /// surface, at altitudes with an optical depth above of (i / last)^4 of the layer's: [row *
   /// kHeights + i]. W/m^2 per W/m^2.
   static constexpr int kHeights = 64;
@@ -62,14 +55,15 @@ struct FogMap {
 };
 
 /// @param air  medium of at most four bands.
-/// tests/viewer/lamps/fog_map_test.cpp bounds the errors of rays against MediaLight.
-[[nodiscard]] FogMap MakeFogMap(const ExponentialLayer& fog, const SolvedAir& air,
-                                const FogView& view, const LayerMapSize& size = {});
+/// tests/viewer/media/layer_map_test.cpp bounds the errors of rays against MediaLight.
+[[nodiscard]] LayerMap MakeLayerMap(const ExponentialLayer& layer, const SolvedAir& air,
+                                    const EyeUnderLight& eye, const LayerMapSize& size = {});
 
-/// Returns whether the map of one eye and sun is valid for others, to a few per cent: the eye is
-/// within a tenth of the fog's scale height, at most 100 m, and the sun within a tenth of a degree.
+/// Returns whether the map of one eye and light is valid for others, to a few per cent: the eye is
+/// within a tenth of the layer's scale height, at most 100 m, and the sun within a tenth of a degree.
 /// Quantities that vary faster, transmittance and the phase function towards the sun, are not in
 /// the map.
-[[nodiscard]] bool Serves(const FogView& made, const FogView& wanted, double scale_height_m);
+[[nodiscard]] bool Serves(const EyeUnderLight& made, const EyeUnderLight& wanted,
+                          double scale_height_m);
 
 }  // namespace alpenglow::renderer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Replaces fog/light.glsl in scenes without fog.
+// Replaces media/layer.glsl in scenes without a layer.
 #define MEDIA_STRETCHES 1
 
 const float kOutOfMedia_km = 1e3;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/lamps/scene_media.h"
+#include "viewer/media/scene_media.h"
+
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 
 std::vector<ShaderPiece> MediaTexts(const MediaKind& kind) {
-  return kind.IsEmpty() ? NoFogTexts() : FogTexts(*kind.layer);
+  return kind.IsEmpty() ? std::vector{ViewerPiece("viewer/shaders/media/none.glsl")}
+                        : LayerTexts(*kind.layer);
 }
 
 SceneMedia::SceneMedia(const LocalMedia& media, const LayerMapSize& size, const MediaUnits& units)
@@ -24,27 +27,27 @@ double SceneMedia::ExtinctionAt(double altitude_m) const {
 }
 
 void SceneMedia::SetSize(const LayerMapSize& size) {
-  for (std::optional<SceneFog>* fog : {&by_sun_, &by_moon_})
-    if (*fog) (*fog)->SetSize(size);
+  for (std::optional<SceneLayer>* layer : {&by_sun_, &by_moon_})
+    if (*layer) (*layer)->SetSize(size);
 }
 
 void SceneMedia::Follow(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
                         const DistantLight& light) {
-  std::optional<SceneFog>& fog = light.body == LightSource::kMoon ? by_moon_ : by_sun_;
-  if (fog) fog->Follow(air, eye, light);
+  std::optional<SceneLayer>& layer = light.body == LightSource::kMoon ? by_moon_ : by_sun_;
+  if (layer) layer->Follow(air, eye, light);
 }
 
 void SceneMedia::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
                                 const DistantLight& light) {
-  std::optional<SceneFog>& fog = light.body == LightSource::kMoon ? by_moon_ : by_sun_;
-  if (fog) fog->WaitUntilReady(air, eye, light);
+  std::optional<SceneLayer>& layer = light.body == LightSource::kMoon ? by_moon_ : by_sun_;
+  if (layer) layer->WaitUntilReady(air, eye, light);
 }
 
 void SceneMedia::Connect(const ShaderProgram& program) const {
   if (by_sun_) by_sun_->Connect(program);
 }
 
-const SceneFog& SceneMedia::Under(LightSource source) const {
+const SceneLayer& SceneMedia::Under(LightSource source) const {
   return source == LightSource::kMoon ? *by_moon_ : *by_sun_;
 }
 
