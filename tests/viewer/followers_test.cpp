@@ -128,7 +128,7 @@ const std::shared_ptr<const TabulatedAir>& Earth() {
   return earth;
 }
 
-GeodeticPosition EyeAt(double altitude_m) { return {.latitude_rad = 0.8, .height_m = altitude_m}; }
+Place PlaceAt(double altitude_m) { return PlaceFromRadians(0.8, 0.0, altitude_m); }
 
 DistantLight SunUp(double elevation_deg) {
   return {LightSource::kSun, tests::EyeUnderSun(0.0, elevation_deg).light, kSunAngularRadius_rad,
@@ -136,7 +136,7 @@ DistantLight SunUp(double elevation_deg) {
 }
 
 // Frames with the same eye and sun until the tables shown are for them.
-void Frames(AirFollower& follower, const GeodeticPosition& eye, const DistantLight& sun) {
+void Frames(AirFollower& follower, const Place& eye, const DistantLight& sun) {
   while (follower.eye().altitude_m != eye.height_m) {
     follower.Follow(eye, sun);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -144,66 +144,66 @@ void Frames(AirFollower& follower, const GeodeticPosition& eye, const DistantLig
 }
 
 TEST_F(AirFollowerOnGpu, HasTablesForTheFirstFrame) {
-  const AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
+  const AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(30.0));
   EXPECT_EQ(follower.eye().altitude_m, 2.0);
   EXPECT_EQ(follower.tabulated(), Earth());
   EXPECT_EQ(follower.making_s(), 0.0) << "made before drawing, not beside it";
 }
 
 TEST_F(AirFollowerOnGpu, ShowsExactTablesOnceAllStandsStill) {
-  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
-  Frames(follower, EyeAt(2.5), SunUp(30.0));
+  AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(30.0));
+  Frames(follower, PlaceAt(2.5), SunUp(30.0));
   EXPECT_EQ(follower.eye().altitude_m, 2.5) << "however small the change";
   EXPECT_GT(follower.making_s(), 0.0);
 }
 
 TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
-  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(1000.0), SunUp(30.0));
-  follower.WaitUntilReady(EyeAt(1000.0), SunUp(30.0));
+  AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(1000.0), SunUp(30.0));
+  follower.WaitUntilReady(PlaceAt(1000.0), SunUp(30.0));
   for (int i = 1; i <= 10; ++i) {
-    follower.Follow(EyeAt(1000.0 + 0.01 * i), SunUp(30.0));
+    follower.Follow(PlaceAt(1000.0 + 0.01 * i), SunUp(30.0));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   EXPECT_EQ(follower.eye().altitude_m, 1000.0);
 }
 
 TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
-  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(3.0));
-  follower.WaitUntilReady(EyeAt(2.0), SunUp(3.0));
+  AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(3.0));
+  follower.WaitUntilReady(PlaceAt(2.0), SunUp(3.0));
   // The sun moves so fast that it sinks by about 0.2 degrees until the tables are shown, however
   // long this machine takes for them: by less, no tables would be due; after a jump, small tables
   // for the present sun would be shown instead.
   constexpr double kFrame_s = 0.04, kSink_deg = 0.2;
   const DistantLight now = SunUp(3.0 - kSink_deg * kFrame_s / (follower.making_s() + kFrame_s));
-  follower.Follow(EyeAt(2.0), now, kFrame_s);  // asks
+  follower.Follow(PlaceAt(2.0), now, kFrame_s);  // asks
   const double made_mu_s = follower.eye().mu_s();
   while (follower.eye().mu_s() == made_mu_s) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    follower.Follow(EyeAt(2.0), now, kFrame_s);
+    follower.Follow(PlaceAt(2.0), now, kFrame_s);
   }
   EXPECT_LT(follower.eye().mu_s(), now.direction.for_air.z) << "lower, for the sun sinks";
 }
 
 TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
-  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
-  follower.Follow(EyeAt(500.0), SunUp(20.0));
-  follower.WaitUntilReady(EyeAt(9000.0), SunUp(-3.0));
+  AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(30.0));
+  follower.Follow(PlaceAt(500.0), SunUp(20.0));
+  follower.WaitUntilReady(PlaceAt(9000.0), SunUp(-3.0));
   EXPECT_EQ(follower.eye().altitude_m, 9000.0);
   EXPECT_NEAR(follower.eye().mu_s(), std::sin(-3.0 * kRadiansPerDegree), 1e-12);
 }
 
 TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
-  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
+  AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(30.0));
   follower.Replace(MediumPreset("hazy"));
-  follower.Follow(EyeAt(2.0), SunUp(30.0));
+  follower.Follow(PlaceAt(2.0), SunUp(30.0));
   EXPECT_EQ(follower.air()->medium().name, "earth") << "until then the last one";
   while (follower.tabulated() == Earth()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    follower.Follow(EyeAt(2.0), SunUp(30.0));
+    follower.Follow(PlaceAt(2.0), SunUp(30.0));
   }
   EXPECT_EQ(follower.air()->medium().name, "hazy");
   EXPECT_EQ(follower.air()->solution(), AirSolution::kDraft);
-  follower.WaitUntilReady(EyeAt(2.0), SunUp(30.0));
+  follower.WaitUntilReady(PlaceAt(2.0), SunUp(30.0));
   EXPECT_EQ(follower.air()->medium().name, "hazy");
   EXPECT_EQ(follower.air()->solution(), AirSolution::kFull);
 }
@@ -244,7 +244,7 @@ TEST(AirChange, IsAboutTheErrorOfTablesThatAreNotMadeAnew) {
 }
 
 TEST_F(AirFollowerOnGpu, AMediumThatCannotBeShownIsRefusedAtOnce) {
-  AirFollower follower(Earth(), AirQuality::kLow, EyeAt(2.0), SunUp(30.0));
+  AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(30.0));
   EXPECT_THROW(follower.Replace(MediumPreset("earth", WavelengthSet(8))), InputError);
   Medium broken = MediumPreset("earth");
   broken.mie_scale_height_m = -1.0;

@@ -186,7 +186,7 @@ TEST_F(ViewerAppFiles, WhoLeavesTwiceGivesUpThePicture) {
 TEST_F(ViewerAppFiles, AnAppThatEndsHasWrittenItsPictures) {
   static_cast<void>(Shown());
   Press(kF3);
-  Commands().Request({false, ImageSize{320, 240}, true});
+  Commands().Request({".png", ImageSize{320, 240}, true});
   app_.reset();
   EXPECT_TRUE(std::filesystem::exists("skyview-0001.png"));
   EXPECT_TRUE(std::filesystem::exists("skyview-0002.png")) << "with its instruments";
@@ -195,14 +195,14 @@ TEST_F(ViewerAppFiles, AnAppThatEndsHasWrittenItsPictures) {
 TEST_F(ViewerAppFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
   static_cast<void>(Shown());
   app_->Advance({{}, kSize, kFrame_s});
-  Commands().Request({false, ImageSize{480, 360}, true});
-  Commands().Request({false, ImageSize{480, 360}, false});
+  Commands().Request({".png", ImageSize{480, 360}, true});
+  Commands().Request({".png", ImageSize{480, 360}, false});
   static_cast<void>(FlyUntilPicturesEnd());
   const DisplayImage with = ReadPng("skyview-0001.png"), without = ReadPng("skyview-0002.png");
   ASSERT_EQ(with.width, 480);
   EXPECT_GT(Changed(with, without), 2000) << "instruments";
   EXPECT_LT(Changed(with, without), 480 * 360) << "over the same picture";
-  Commands().Request({true, ImageSize{480, 360}, true});
+  Commands().Request({".exr", ImageSize{480, 360}, true});
   EXPECT_TRUE(Messages().back().is_warning) << "instruments are no light";
   EXPECT_FALSE(app_->Model().progress);
   EXPECT_FALSE(std::filesystem::exists("skyview-0003.exr"));

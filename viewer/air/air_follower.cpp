@@ -165,7 +165,7 @@ AirTables AirFollower::TablesOf(const Request& request) {
 }
 
 AirFollower::AirFollower(std::shared_ptr<const TabulatedAir> air, AirQuality quality,
-                         const GeodeticPosition& eye, const DistantLight& light, Drafts drafts)
+                         const Place& eye, const DistantLight& light, Drafts drafts)
     : air_(std::move(air)),
       shown_(air_),
       quality_(quality),
@@ -215,12 +215,11 @@ void AirFollower::RefineDraft() {
     solver_.Request({air_->air.medium(), AirSolution::kFull});
 }
 
-AirFollower::Request AirFollower::Wanted(const GeodeticPosition& eye,
-                                         const DistantLight& light) const {
+AirFollower::Request AirFollower::Wanted(const Place& eye, const DistantLight& light) const {
   const bool draft = air_->air.solution() == AirSolution::kDraft;
   return {air_,
           {std::max(eye.height_m, 0.0), light.direction, light.radius_rad},
-          eye.latitude_rad,
+          eye.latitude_rad(),
           draft ? std::min(quality_, AirQuality::kLow) : quality_};
 }
 
@@ -237,7 +236,7 @@ bool AirFollower::IsDue(const Request& wanted) const {
   return stands || change > kMostChange;
 }
 
-void AirFollower::Follow(const GeodeticPosition& eye, const DistantLight& light, double seconds) {
+void AirFollower::Follow(const Place& eye, const DistantLight& light, double seconds) {
   if (seconds > 0.0) maker_.GiveWay();
   PollFinished();
   RefineDraft();
@@ -270,7 +269,7 @@ void AirFollower::ShowSmall(Request wanted) {
   eye_ = tables.eye;
 }
 
-void AirFollower::WaitUntilReady(const GeodeticPosition& eye, const DistantLight& light) {
+void AirFollower::WaitUntilReady(const Place& eye, const DistantLight& light) {
   solver_.Wait();
   PollFinished();
   if (air_->air.solution() == AirSolution::kDraft) {

@@ -86,9 +86,8 @@ class AirFollower {
   enum class Drafts { kRefined, kKept };
   /// Computes small tables for the first frame before it returns, which takes some milliseconds.
   /// @param eye, light  of the first frame, as in Follow.
-  AirFollower(std::shared_ptr<const TabulatedAir> air, AirQuality quality,
-              const GeodeticPosition& eye, const DistantLight& light,
-              Drafts drafts = Drafts::kRefined);
+  AirFollower(std::shared_ptr<const TabulatedAir> air, AirQuality quality, const Place& eye,
+              const DistantLight& light, Drafts drafts = Drafts::kRefined);
 
   /// Replaces the medium, which is solved beside drawing and displayed when it is ready: first as a
   /// draft, then in full if no other medium was requested meanwhile. Throws InputError at once for
@@ -102,10 +101,10 @@ class AirFollower {
   /// computed for the position of the sun when they will be displayed.
   /// @param light  in the frame east, north, up of the eye.
   /// @param seconds  since the last call; 0: the clock is stopped.
-  void Follow(const GeodeticPosition& eye, const DistantLight& light, double seconds = 0.0);
+  void Follow(const Place& eye, const DistantLight& light, double seconds = 0.0);
   /// Waits until the final tables of Follow are displayed. It is used for pictures that are written
   /// to files.
-  void WaitUntilReady(const GeodeticPosition& eye, const DistantLight& light);
+  void WaitUntilReady(const Place& eye, const DistantLight& light);
 
   /// Returns the displayed textures.
   [[nodiscard]] const AirTextures& textures() const { return textures_; }
@@ -142,7 +141,7 @@ class AirFollower {
   [[nodiscard]] Request Ahead(const Request& wanted, double seconds) const;
   void PollFinished();
   void RefineDraft();
-  [[nodiscard]] Request Wanted(const GeodeticPosition& eye, const DistantLight& light) const;
+  [[nodiscard]] Request Wanted(const Place& eye, const DistantLight& light) const;
   [[nodiscard]] bool IsDue(const Request& wanted) const;
 
   std::shared_ptr<const TabulatedAir> air_;  // displayed next

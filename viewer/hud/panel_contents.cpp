@@ -33,8 +33,6 @@ const std::vector<std::string> kTableHeading{"", "made in", "memory"};
 
 float Pixels(const PanelView& view, double units) { return static_cast<float>(units * view.scale); }
 
-double Degrees(double radians) { return radians / kRadiansPerDegree; }
-
 double StripWidth_px(const PanelView& view) {
   const double margin = static_cast<double>(2.0F * ImGui::GetStyle().WindowPadding.x +
                                             ImGui::GetStyle().ScrollbarSize);

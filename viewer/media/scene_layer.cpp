@@ -113,7 +113,7 @@ void SceneLayer::Follow(const std::shared_ptr<const SolvedAir>& air, const Camer
 
 void SceneLayer::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
                                 const DistantLight& light) {
-  if (air_ != air) BeginIn(air, eye.place.latitude_rad);
+  if (air_ != air) BeginIn(air, eye.place.latitude_rad());
   maps_->WaitUntilReady(EyeUnder(eye, light));
   maps_->Update();
   painter_.Upload(*maps_->value());

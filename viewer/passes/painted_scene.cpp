@@ -133,8 +133,7 @@ void PaintedScene::TakeSkyByPixel() {
 
 void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace,
                              double seconds) {
-  const auto keep_up = [&](AirFollower& air, const GeodeticPosition& eye,
-                           const DistantLight& light) {
+  const auto keep_up = [&](AirFollower& air, const Place& eye, const DistantLight& light) {
     pace == Pace::kFollow ? air.Follow(eye, light, seconds) : air.WaitUntilReady(eye, light);
   };
   const DistantLight* moon = OfSource(lights, LightSource::kMoon);

@@ -125,7 +125,7 @@ class PaintedScene {
 
   FixedScene fixed_;
   PaintSizes sizes_;
-  GeodeticPosition sunlit_place_;               // of the last eye for which the sun was a light
+  Place sunlit_place_;                          // of the last eye for which the sun was a light
   DistantLight sun_;                            // as it was then
   AirFollower air_;                             // of that eye under that sun
   std::shared_ptr<const SolvedAir> known_air_;  // the medium in ground_textures_

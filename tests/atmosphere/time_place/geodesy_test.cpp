@@ -91,8 +91,8 @@ TEST(Geodesy, AntimeridianIsOneMeridianToTheLastBit) {
     const Vector<Enu> north = LocalFrame(kWgs84, west).EnuFromEcef(Vector<Ecef>{{1.0, 2.0, 3.0}});
     EXPECT_EQ(north.xyz, LocalFrame(kWgs84, east).EnuFromEcef(Vector<Ecef>{{1.0, 2.0, 3.0}}).xyz);
   }
-  EXPECT_EQ(CheckedPlace({0, 190, 0}).longitude_rad(), Place{0, -170, 0}.longitude_rad());
-  EXPECT_EQ(CheckedPlace({0, 360, 0}).longitude_rad(), 0.0);
+  EXPECT_EQ(CheckedPlace({0, 190, 0}).longitude_deg, -170.0);
+  EXPECT_EQ(CheckedPlace({0, 360, 0}).longitude_deg, 0.0);
 }
 
 TEST(Geodesy, LongitudesWrapIntoOneTurn) {

@@ -232,12 +232,14 @@ bool HasSingle(const AirTables& tables) {
 // The dust of Mars is lit up to 33 km, and its forward peak is seen long after sunset.
 TEST(AirTables, OfASunThatHasSetHaveAllLightInOneTable) {
   const SolvedAir mars = tests::SolvedAsClearAir(MediumPreset("mars"));
-  EXPECT_TRUE(HasSingle(TablesOf(tests::Earth(), EyeUnder(2.0, -3.1), AirQuality::kLow)));
-  EXPECT_TRUE(HasSingle(TablesOf(mars, EyeUnder(2.0, -7.0), AirQuality::kLow)));
-  EXPECT_FALSE(HasSingle(TablesOf(tests::Earth(), EyeUnder(2.0, -3.3), AirQuality::kLow)));
-  EXPECT_FALSE(HasSingle(TablesOf(mars, EyeUnder(2.0, -8.2), AirQuality::kLow)));
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, -3.3), AirQuality::kHigh, {2.2e-4, 1.1e-3, 2e-5});
-  ExpectErrorsBelow(mars, EyeUnder(2.0, -8.2), AirQuality::kHigh, {5e-2, 6.2e-2, 6e-5});
+  EXPECT_TRUE(HasSingle(TablesOf(tests::Earth(), tests::EyeUnderSun(2.0, -3.1), AirQuality::kLow)));
+  EXPECT_TRUE(HasSingle(TablesOf(mars, tests::EyeUnderSun(2.0, -7.0), AirQuality::kLow)));
+  EXPECT_FALSE(
+      HasSingle(TablesOf(tests::Earth(), tests::EyeUnderSun(2.0, -3.3), AirQuality::kLow)));
+  EXPECT_FALSE(HasSingle(TablesOf(mars, tests::EyeUnderSun(2.0, -8.2), AirQuality::kLow)));
+  ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(2.0, -3.3), AirQuality::kHigh,
+                    {2.2e-4, 1.1e-3, 2e-5});
+  ExpectErrorsBelow(mars, tests::EyeUnderSun(2.0, -8.2), AirQuality::kHigh, {5e-2, 6.2e-2, 6e-5});
 }
 
 TEST(AirTables, OfThreeWavelengthsLeaveTheFourthBandDark) {

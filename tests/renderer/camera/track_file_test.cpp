@@ -35,8 +35,6 @@ class TrackFile : public TemporaryFolder {
   }
 };
 
-double Degrees(double radians) { return radians / kRadiansPerDegree; }
-
 constexpr char kGpx[] = R"(<?xml version="1.0" encoding="UTF-8"?>
 <gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">
   <wpt lat="1" lon="2"><name>not on the track</name></wpt>
