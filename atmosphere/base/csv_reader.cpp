@@ -19,16 +19,17 @@ namespace {
 // Longer lines are rejected: in a binary file, for example, the first line could be the whole file.
 constexpr std::size_t kLongestLine = 4096;
 
-std::unique_ptr<std::istream> OpenedFile(const std::filesystem::path& file) {
+std::unique_ptr<std::streambuf> OpenedFile(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     throw InputError(
         fmt::format("{}: {}", file.string(), error ? error.message() : "is not a regular file"));
   }
   RefuseKnownFormats(file, "CSV is read");
-  auto stream = std::make_unique<std::ifstream>(file, std::ios::binary);
-  if (!*stream) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  return stream;
+  auto bytes = std::make_unique<std::filebuf>();
+  if (bytes->open(file, std::ios::in | std::ios::binary) == nullptr)
+    throw InputError(fmt::format("{}: cannot be read", file.string()));
+  return bytes;
 }
 
 }  // namespace
@@ -52,11 +53,11 @@ CsvReader::CsvReader(const std::filesystem::path& file, std::span<const std::str
 
 CsvReader::CsvReader(const std::string& text, const std::filesystem::path& origin,
                      std::span<const std::string_view> columns, const Rules& rules)
-    : CsvReader(std::make_unique<std::istringstream>(text), origin, columns, rules) {
+    : CsvReader(std::make_unique<std::stringbuf>(text), origin, columns, rules) {
   bytes_ = text.size();
 }
 
-CsvReader::CsvReader(std::unique_ptr<std::istream> stream, const std::filesystem::path& origin,
+CsvReader::CsvReader(std::unique_ptr<std::streambuf> stream, const std::filesystem::path& origin,
                      std::span<const std::string_view> columns, const Rules& rules)
     : file_(origin),
       columns_(columns.begin(), columns.end()),
@@ -72,11 +73,10 @@ void CsvReader::Fail(std::size_t line, const std::string& fault) const {
 
 bool CsvReader::ReadLine() {
   line_.clear();
-  using Traits = std::istream::traits_type;
+  using Traits = std::streambuf::traits_type;
   bool any = false, ended = false;
-  std::streambuf* buffer = stream_->rdbuf();
-  auto c = buffer->sbumpc();
-  for (; !Traits::eq_int_type(c, Traits::eof()); c = buffer->sbumpc()) {
+  auto c = stream_->sbumpc();
+  for (; !Traits::eq_int_type(c, Traits::eof()); c = stream_->sbumpc()) {
     any = true;
     ++bytes_read_;
     ended = c == '\n' || c == '\r';
@@ -87,8 +87,8 @@ bool CsvReader::ReadLine() {
     }
   }
   if (!any || (rules_.cut_short && !ended)) return false;
-  if (c == '\r' && buffer->sgetc() == '\n') {
-    buffer->sbumpc();
+  if (c == '\r' && stream_->sgetc() == '\n') {
+    stream_->sbumpc();
     ++bytes_read_;
   }
   ++line_number_;

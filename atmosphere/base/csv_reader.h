@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <istream>
 #include <memory>
 #include <span>
+#include <streambuf>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,7 +62,7 @@ class CsvReader {
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
  private:
-  CsvReader(std::unique_ptr<std::istream> stream, const std::filesystem::path& origin,
+  CsvReader(std::unique_ptr<std::streambuf> bytes, const std::filesystem::path& origin,
             std::span<const std::string_view> columns, const Rules& rules);
   [[nodiscard]] bool ReadLine();
   [[nodiscard]] bool ReadRecord();
@@ -70,7 +70,7 @@ class CsvReader {
 
   std::filesystem::path file_;
   std::vector<std::string_view> columns_;
-  std::unique_ptr<std::istream> stream_;
+  std::unique_ptr<std::streambuf> stream_;
   std::uint64_t bytes_ = 0;
   std::uint64_t bytes_read_ = 0;
   std::size_t line_number_ = 0;

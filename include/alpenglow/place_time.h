@@ -24,6 +24,7 @@ struct Place {
   /// Returns the longitude [rad].
   [[nodiscard]] constexpr double longitude_rad() const { return longitude_deg * kRadiansPerDegree; }
 
+  /// Returns whether all coordinates are equal.
   [[nodiscard]] bool operator==(const Place&) const = default;
 
  private:

@@ -51,7 +51,7 @@ void Measure(int side) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "N46E008.hgt";
   WriteTile(file, side);
   Scene scene;
-  scene.place = {46.5 * kRadiansPerDegree, 8.5 * kRadiansPerDegree, 0.0};
+  scene.place = {46.5, 8.5, 0.0};
   scene.medium = MediumPreset("earth");
   scene.camera.height = {300.0, true};
   scene.terrain.kind = TerrainSource::Kind::kElevationModel;

@@ -44,8 +44,7 @@ double LuminanceOfPixel(const Image& image, int x, int y) {
 // not, and each smooths the light beside it in its own way.
 double SkyDifferenceOf(const Image& image, const Image& expected) {
   const SunPosition sun =
-      SunAt({kSkyLatitude_deg * kRadiansPerDegree, kSkyLongitude_deg * kRadiansPerDegree, 0.0},
-            ParseInstant(kSkyInstant));
+      SunAt({kSkyLatitude_deg, kSkyLongitude_deg, 0.0}, ParseInstant(kSkyInstant));
   const glm::dvec3 to_sun = DirectionOf(sun).seen;
   double squares = 0.0, count = 0.0;
   for (int y = 0; y < kPanoramaHeight / 2 - 1; ++y) {

@@ -67,9 +67,10 @@ TEST(Moon, StandsLowerOverTheHorizonThanFromTheCentreOfTheEarth) {
   const MoonPosition centre = MoonAt(kGeocentre, instant);
   // One place has the moon in the geocentric zenith, the other is a quarter of the earth away.
   const double longitude = std::atan2(centre.direction.xyz.y, centre.direction.xyz.x);
-  const MoonPosition under = MoonAt({std::asin(centre.direction.xyz.z), longitude, 0.0}, instant);
+  const MoonPosition under =
+      MoonAt(PlaceFromRadians(std::asin(centre.direction.xyz.z), longitude, 0.0), instant);
   EXPECT_NEAR(centre.distance_m - under.distance_m, 6371e3, 20e3) << "nearer by the earth's radius";
-  const Place aside{0.0, longitude + 0.5 * kPi, 0.0};
+  const Place aside = PlaceFromRadians(0.0, longitude + 0.5 * kPi, 0.0);
   const MoonPosition low = MoonAt(aside, instant);
   const double parallax = 6378137.0 / centre.distance_m;
   EXPECT_NEAR(low.elevation_rad, std::asin(-std::sin(parallax)), 30.0 * kArcsecond)

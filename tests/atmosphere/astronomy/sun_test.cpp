@@ -223,7 +223,7 @@ TEST(Sun, ClimbsUntilNoonAndSinksAfterwards) {
 
 TEST(Sun, BadPlacesAreRefused) {
   EXPECT_THROW((void)SunAt({std::nan(""), 0.0, 0.0}, {}), InputError);
-  EXPECT_THROW((void)SunAt({2.0, 0.0, 0.0}, {}), InputError);
+  EXPECT_THROW((void)SunAt({90.1, 0.0, 0.0}, {}), InputError);
 }
 
 // --- the disk ---
@@ -554,7 +554,7 @@ TEST(SunEvents, Longitudes180AndMinus180AreIdentical) {
   for (const SunEvent event : kInOrder) {
     const auto east = FindSunEvent(event, Place{-16.5, 180.0, 0.0}, around);
     EXPECT_EQ(east, FindSunEvent(event, CheckedPlace({-16.5, -180.0, 0.0}), around));
-    EXPECT_EQ(east, FindSunEvent(event, {-16.5 * kRadiansPerDegree, -kPi, 0.0}, around));
+    EXPECT_EQ(east, FindSunEvent(event, {-16.5, -180.0, 0.0}, around));
   }
 }
 

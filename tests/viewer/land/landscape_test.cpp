@@ -533,7 +533,7 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
   EXPECT_LT(tests::Quantile(misses.normal, 1.0), 1e-4);
   const auto grid = land.ground().Sampler()(eye.place, 1000.0, 9);
   ASSERT_TRUE(grid);
-  EXPECT_NEAR(*grid->HeightAt(0.81, 0.14), 200.0, 0.1);
+  EXPECT_NEAR(*grid->HeightAt(eye.place.latitude_rad(), eye.place.longitude_rad()), 200.0, 0.1);
   land.Relight({[](const LocalFrame&, std::span<const LandVertex> vertices) {
     return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, {}, -1.0F});
   }});
