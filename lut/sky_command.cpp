@@ -167,23 +167,23 @@ void AddPlace(CLI::App& sky, SkyOptions& options) {
   CLI::Option* elevation =
       sky.add_option("--sun-elevation", options.sun_elevation,
                      "Apparent elevation of the sun in degrees above the horizontal, -90 to 90")
-          ->check(CLI::Range(-90.0, 90.0));
+          ->check(InRange(-90.0, 90.0));
   sky.add_option("--sun-azimuth", options.sun_azimuth,
                  "Azimuth of the sun in degrees from north over east, -360 to 360")
-      ->check(CLI::Range(-360.0, 360.0))
+      ->check(InRange(-360.0, 360.0))
       ->needs(elevation)
       ->capture_default_str();
   CLI::Option* latitude = sky.add_option("--latitude", options.latitude, "Degrees north, -90 to 90")
-                              ->check(CLI::Range(-90.0, 90.0))
+                              ->check(InRange(-90.0, 90.0))
                               ->excludes(elevation);
   CLI::Option* longitude =
       sky.add_option("--longitude", options.longitude, "Degrees east, -180 to 360")
-          ->check(CLI::Range(-180.0, 360.0))
+          ->check(InRange(-180.0, 360.0))
           ->needs(latitude);
   sky.add_option("--altitude,--height", options.altitude,
                  "Height of the observer in metres above the ground, -12000 to 1e9; values below 0 "
                  "are treated as 0")
-      ->check(CLI::Range(-12000.0, 1e9))
+      ->check(InRange(-12000.0, 1e9))
       ->capture_default_str();
   sky.add_option("--orient", options.orientation,
                  "Direction of the centre of the picture: north or geographic (north); blender, "

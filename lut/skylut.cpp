@@ -72,7 +72,7 @@ void AddEval(CLI::App& app, Options& options) {
   CLI::Option* samples =
       eval.add_option("--samples", options.samples,
                       "With integral: Gauss nodes in each smooth piece of a ray (default: 16)")
-          ->check(CLI::Range(kFewestSamples, kMostSamples));
+          ->check(InRange(kFewestSamples, kMostSamples));
   eval.add_option("--max-error", options.max_error,
                   "Relative error, 1e-8 to 1 or in percent; for path-trace, one standard error "
                   "(default of path-trace: 0.5%)")

@@ -140,7 +140,7 @@ void AddTimesOutput(CLI::App& times, TimesOptions& options) {
   times
       .add_option("--minutes", options.every_min,
                   "Time in minutes between points of the plot, 1 to 1440")
-      ->check(CLI::Range(1.0, 1440.0))
+      ->check(InRange(1.0, 1440.0))
       ->needs(plot)
       ->capture_default_str();
 }
@@ -179,7 +179,7 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
   CLI::Option* file = times.add_option("SCENE", options->scene_file, "Scene file (TOML)");
   CLI::Option* latitude =
       times.add_option("--latitude", options->latitude_deg, "Degrees north, -90 to 90")
-          ->check(CLI::Range(-90.0, 90.0))
+          ->check(InRange(-90.0, 90.0))
           ->excludes(file);
   CLI::Option* place =
       times
@@ -190,7 +190,7 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
           ->excludes(file)
           ->excludes(latitude);
   times.add_option("--longitude", options->longitude_deg, "Degrees east, -180 to 360")
-      ->check(CLI::Range(-180.0, 360.0))
+      ->check(InRange(-180.0, 360.0))
       ->needs(latitude);
   latitude->needs("--longitude");
   times.parse_complete_callback([file, latitude, place] {
@@ -202,7 +202,7 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
           "--height,--altitude", options->height_m,
           "Height in metres above the ellipsoid, -12000 to 1e9. The horizon of a high place is "
           "lower. The events of skyseries --at are those of height 0")
-      ->check(CLI::Range(-12000.0, 1e9))
+      ->check(InRange(-12000.0, 1e9))
       ->excludes(file)
       ->capture_default_str();
   BeginGroup(times, kTimeGroup);
@@ -213,7 +213,7 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
   times.add_option("--date", options->date, "First day: 2026-06-21, today, tomorrow, yesterday")
       ->capture_default_str();
   times.add_option("--days", options->days, "Number of days, 1 to 3660")
-      ->check(CLI::Range(1, 3660))
+      ->check(InRange(1, 3660))
       ->capture_default_str();
   AddTimesOutput(times, *options);
   AddCommonOptions(times, "skyseries", options->common);

@@ -124,12 +124,12 @@ inline void AddPathOptions(CLI::App& app, SkyseriesOptions& options) {
       "place");
   app.add_option("--track-speed", options.track.speed_m_per_s,
                  "Speed in metres per second along a track without times, 0.1 to 1e5")
-      ->check(CLI::Range(0.1, 1e5))
+      ->check(InRange(0.1, 1e5))
       ->needs(path)
       ->capture_default_str();
   app.add_option("--track-height", options.track.over_ground_m,
                  "Height in metres above the ground of a track without heights, 0 to 1e6")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(InRange(0.0, 1e6))
       ->needs(path)
       ->capture_default_str();
 }
@@ -160,7 +160,7 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_option("--shutter", options.shutter,
                  "Motion blur along a path: fraction of the time between frames during which the "
                  "shutter is open, 0 to 1")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(InRange(0.0, 1.0))
       ->needs(path)
       ->capture_default_str();
   app.add_option("--frames", options.frames, "Render only these frames: A-B,C, counted from 0");
@@ -213,7 +213,7 @@ inline void AddRayOptions(CLI::App& app, PictureOptionTexts& texts) {
                  "Rays per pixel, 1 to 1024. Powers of two are distributed best; pictures with 1 "
                  "are not smoothed. With --noise, the number of first rays, at least 2 (default: "
                  "4, and --noise)")
-      ->check(CLI::Range(1, PixelSamples::kMostSamples));
+      ->check(InRange(1, PixelSamples::kMostSamples));
   app.add_option("--noise", texts.noise,
                  "Use more rays, up to 256, in pixels whose noise exceeds this fraction of their "
                  "brightness, 1e-8 to 1 or in percent (default: 2%; with --samples alone all "

@@ -9,6 +9,7 @@
 - The table of tests/README.md has every header of tests/fixtures, and no others.
 - A manual has every option that --help of its program prints, and no option that it does not print.
   Its row of an option has both ends of the range that --help prints.
+- An option with a range refuses numbers below and above it, nan and words with status 2.
 - skyseries accepts every command of it in the documents that needs no file: it lists the frames.
 - The manuals of scene.toml and atmosphere.toml have every key that the readers accept. The readers
   list their keys in the message about an unknown one.
@@ -180,6 +181,37 @@ def faults_of_options(programs):
             yield f"{manual}: {name} has no option {option}"
 
 
+# Options without which a command ends before it looks at the values of others.
+NEEDED = {
+    "skylut sky": {"--out": "q.exr", "--sun-elevation": "10"},
+    "skylut build": {"--out": "q"},
+    "skylut eval": {"--out": "q", "--cases": "q", "--method": "integral"},
+    "skyseries": {"--list": "", "--at": "noon", "--place": "Zurich"},
+    "skyseries times": {"--place": "Zurich"},
+    "skyview": {"--headless": "", "--benchmark": "1"},
+}
+
+
+def refused(ends):
+    """Values that an option with a range refuses."""
+    return (f"{ends[0] - 1:g}", f"{ends[1] + abs(ends[1]) + 1:g}", "nan", UNKNOWN)
+
+
+def faults_of_ranges(programs, folder):
+    for called, needed in NEEDED.items():
+        name, *subcommand = called.split()
+        if name not in programs:
+            continue
+        program = str(pathlib.Path(programs[name]).resolve())
+        for option, ends in options_of_help(program, "".join(subcommand)).items():
+            for value in refused(ends) if ends else ():
+                given = {**needed, option: value}
+                command = [program, *subcommand, *(f"{key}={of}" if of else key for key, of in given.items())]
+                done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
+                if done.returncode != 2 or value not in done.stderr:
+                    yield f"{called} {option}={value} ends with {done.returncode}: {done.stderr.strip()}"
+
+
 def commands_in(text):
     """The commands in the code blocks of a shell, as lists of words."""
     for block in re.findall(r"^```sh\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL):
@@ -271,6 +303,8 @@ def main():
     programs = {name: path for name, path in arguments.items() if path}
     faults = [*faults_of_links(), *faults_of_paths(), *faults_of_fixtures(), *faults_of_example(),
               *faults_of_options(programs)]
+    with tempfile.TemporaryDirectory() as folder:
+        faults += faults_of_ranges(programs, pathlib.Path(folder))
     if "skyseries" in programs:
         with tempfile.TemporaryDirectory() as folder:
             skyseries = pathlib.Path(programs["skyseries"]).resolve()

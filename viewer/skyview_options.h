@@ -70,21 +70,21 @@ inline void AddPlaceOptions(CLI::App& app, SkyviewOptions& options) {
                      "Scene file (TOML). Without it, skyview shows --dem or a built-in mountain "
                      "range");
   app.add_option("--latitude", options.latitude, "Place of the camera in degrees north, -90 to 90")
-      ->check(CLI::Range(-90.0, 90.0));
+      ->check(InRange(-90.0, 90.0));
   app.add_option("--longitude", options.longitude,
                  "Place of the camera in degrees east, -180 to 360")
-      ->check(CLI::Range(-180.0, 360.0));
+      ->check(InRange(-180.0, 360.0));
   app.add_option("--place", options.place,
                  "Start at an airport, peak or city by name or code: LSZH, \"Mont Blanc\"");
   app.add_option("--altitude,--height", options.altitude,
                  "Height of the camera in metres above the ellipsoid, -12000 to 1e9")
-      ->check(CLI::Range(-12000.0, 1e9));
+      ->check(InRange(-12000.0, 1e9));
   app.add_option("--heading", options.heading,
                  "Direction of view in degrees clockwise from north, -360 to 360")
-      ->check(CLI::Range(-360.0, 360.0));
+      ->check(InRange(-360.0, 360.0));
   app.add_option("--pitch", options.pitch,
                  "Direction of view in degrees above the horizontal, -90 to 90")
-      ->check(CLI::Range(-90.0, 90.0));
+      ->check(InRange(-90.0, 90.0));
   app.add_option("--dem", options.dem,
                  "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, and folders of these files; "
                  "several may be given")
@@ -114,7 +114,7 @@ inline void AddPictureOptions(CLI::App& app, SkyviewOptions& options) {
       ->capture_default_str();
   app.add_option("--frame-rate", options.frame_rate,
                  "Frames per second that --quality auto keeps, 1 to 1000")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(InRange(1.0, 1000.0))
       ->capture_default_str();
   AddPictureLooks(app, options);
   app.add_option("--hud", options.hud,
@@ -123,7 +123,7 @@ inline void AddPictureOptions(CLI::App& app, SkyviewOptions& options) {
       ->capture_default_str();
   app.add_option("--hud-scale", options.hud_scale,
                  "Size of the instruments, 0.5 to 8 (default: the scale of the desktop)")
-      ->check(CLI::Range(0.5, 8.0));
+      ->check(InRange(0.5, 8.0));
   app.add_option("--vsync", options.vsync, "Wait for the display before each frame: on or off")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
@@ -139,7 +139,7 @@ inline void AddOutputOptions(CLI::App& app, SkyviewOptions& options) {
   app.add_option("--frames", options.frames,
                  "Number of frames before the screenshot, 1 to 1000000; for a replay without a "
                  "display, number of pictures along it, including both ends")
-      ->check(CLI::Range(1, 1000000))
+      ->check(InRange(1, 1000000))
       ->needs(picture)
       ->capture_default_str();
   app.add_flag("--headless", options.headless,
@@ -154,7 +154,7 @@ inline void AddOutputOptions(CLI::App& app, SkyviewOptions& options) {
           ->excludes(picture)
           ->excludes("--record");
   app.add_option("--fps", options.fps, "Frames per second of the film, 1 to 1000")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(InRange(1.0, 1000.0))
       ->needs(video)
       ->capture_default_str();
 }
@@ -167,7 +167,7 @@ inline void AddDiagnostics(CLI::App& app, SkyviewOptions& options) {
                      "and print frame times. Each line is a pass: \"name median_ms p95_ms "
                      "p99_ms\". name.cpu is the time of the drawing thread; frame is the whole "
                      "frame")
-          ->check(CLI::Range(0.1, 3600.0));
+          ->check(InRange(0.1, 3600.0));
   for (const char* other : {"--screenshot", "--video", "--replay", "--record"})
     benchmark->excludes(other);
   app.add_flag("--explain", options.explain,

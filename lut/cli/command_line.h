@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/cli/command_words.h"
 #include "lut/cli/program.h"
 #include "lut/cli/terminal.h"
@@ -54,6 +56,19 @@ inline void BeginDiagnostics(CLI::App& app) {
   app.set_help_flag("-h,--help", "Print this help and exit");
 }
 
+/// Returns a validator that accepts the numbers in [low, high]. CLI::Range accepts NaN, too.
+template <typename Number>
+[[nodiscard]] CLI::Validator InRange(Number low, Number high) {
+  const CLI::Range range(low, high);
+  const auto fault = [=](std::string& text) -> std::string {
+    const std::optional<double> number = ParseNumber(text);
+    if (number && std::isnan(*number))
+      return fmt::format("Value {} not in range {} to {}", text, low, high);
+    return range(text);
+  };
+  return CLI::Validator(fault, range.get_description());
+}
+
 /// Adds --atmosphere. `atmosphere` must outlive the parsing.
 inline void AddAtmosphereOption(CLI::App& command, std::optional<std::string>& atmosphere) {
   command.add_option("--atmosphere", atmosphere,
@@ -72,7 +87,7 @@ inline constexpr char kNightVisionHelp[] =
 inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOptions& options) {
   BeginDiagnostics(app);
   app.add_option("--threads", options.threads, "Number of threads; 0 uses all")
-      ->check(CLI::Range(0, 4096))
+      ->check(InRange(0, 4096))
       ->capture_default_str();
   app.add_flag("--quiet", options.quiet,
                "Suppress progress and the summary, but not warnings, on standard error");

@@ -344,17 +344,23 @@ TEST(AtmosphereFile, LimitsThatLeaveNoValueNameBothCauses) {
   }
 }
 
+/// Expects that a key refuses values that it does not accept, and that a mistyped key is refused.
+/// @param section  the line above the key, if it is not a key of the top level.
+void ExpectRefusals(const TomlKey& key, const std::string& section, const std::string& name) {
+  const int line = section.empty() ? 1 : 2;
+  for (const auto& [value, fault] : tests::RefusedValues(key, name)) {
+    EXPECT_EQ(FileFaultOf(fmt::format("{}{} = {}\n", section, key.key, value)),
+              fmt::format("a.toml:{}: {}", line, fault));
+  }
+  EXPECT_EQ(FileFaultOf(fmt::format("{}{}q = 1\n", section, key.key)),
+            fmt::format("a.toml:{}: unknown key {}q; did you mean {}?", line, name, key.key));
+}
+
 TEST(AtmosphereFile, EveryKeyRefusesValuesThatItDoesNotAccept) {
+  for (const TomlKey& key : TopFieldsOfMedium().Keys()) ExpectRefusals(key, "", key.key);
   for (const TomlFields<Medium>& section : SectionsOfMedium()) {
-    for (const TomlKey& key : section.Keys()) {
-      const std::string name = section.name + "." + key.key;
-      for (const auto& [value, fault] : tests::RefusedValues(key, name)) {
-        EXPECT_EQ(FileFaultOf(fmt::format("[{}]\n\n{} = {}\n", section.name, key.key, value)),
-                  "a.toml:3: " + fault);
-      }
-      EXPECT_EQ(FileFaultOf(fmt::format("[{}]\n{}q = 1\n", section.name, key.key)),
-                fmt::format("a.toml:2: unknown key {}q; did you mean {}?", name, key.key));
-    }
+    for (const TomlKey& key : section.Keys())
+      ExpectRefusals(key, fmt::format("[{}]\n", section.name), section.name + "." + key.key);
   }
 }
 
@@ -447,9 +453,6 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"[spectrum]\nwavelengths_nm = [300]\nsolar_irradiance = [0.5]\n"
        "[ozone]\ndobson = 300\n",
        "give ozone.absorption_per_m"},
-      {"[planet]\nradius = 6e6\n", "a.toml:2: unknown key planet.radius; did you mean radius_m?"},
-      {"[rayleigh]\n\nscatering_per_m = [1]\n",
-       "a.toml:3: unknown key rayleigh.scatering_per_m; did you mean scattering_per_m?"},
       {"[planets]\n", "unknown key planets; did you mean planet?"},
       {"\npreset = \"earht\"\n",
        "a.toml:2: preset is \"earht\"; it must be one of earth, clear-mountain, hazy, mars, "
@@ -465,16 +468,11 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
        "a.toml:2: planet.ground_albedo has 2 values; it must have 4, one per wavelength"},
       {"planet = 3\n", "a.toml:1: planet is 3; it must be a table"},
       {"[[planet]]\nradius_m = 1e6\n", "a.toml:1: planet is a list; it must be a table"},
-      {"polarised = 1\n", "a.toml:1: polarised is 1"},
       {"[rayleigh]\ndepolarisation = [0.1, 0.2]\n",
        "a.toml:2: rayleigh.depolarisation has 2 values; it must have 4"},
-      {"preset = 3\n", "a.toml:1: preset is 3; it must be text"},
       {"[spectrum]\nwavelengths_nm = []\n", "a.toml:2: spectrum.wavelengths_nm has 0 values"},
       {"[spectrum]\nwavelengths_nm = [500, 400, 600]\n", "a.toml:2: spectrum.wavelengths_nm has"},
       {"[spectrum]\nwavelengths_nm = [500, 500]\n", "a.toml:2: spectrum.wavelengths_nm has 500"},
-      {"[spectrum]\nwavelengths_nm = [199]\n",
-       "a.toml:2: spectrum.wavelengths_nm[0] is 199; it must "
-       "lie in [200, 4000]"},
       {"[rayleigh]\nscattering_per_m = [1e-6, 1e-6, 1e-6]\n",
        "a.toml:2: rayleigh.scattering_per_m has 3 values; it must have 4"},
       {"[mie]\nscattering_per_m = [1, 1, 1, 1]\n",

