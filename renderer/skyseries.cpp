@@ -78,7 +78,7 @@ void RequireVisible(const CameraPath& path, const std::string& file, const Scene
   const bool has_land = scene.terrain.kind != TerrainSource::Kind::kNone;
   CheckPoints(path, file, [&](Place place) {
     if (has_land) place.height_m = std::max(place.height_m, 0.0);
-    static_cast<void>(StandAt(ground, place));
+    static_cast<void>(FromEyeAt(ground, place));
   });
 }
 

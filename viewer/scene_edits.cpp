@@ -104,7 +104,7 @@ void SceneEdits::Restore(const SceneChanges& changes) {
 bool SceneEdits::IsRangeExpectedAt(const Place& place) const {
   constexpr double kNear_m = 100.0;
   if (!has_range_ || painter_.land().ground().IsKnownAt(place)) return false;
-  Place view = ProceduralMountainsViewAboveGround(*scene_.terrain.centre).eye;
+  Place view = ProceduralMountainsViewAboveGround(*scene_.terrain.centre).place;
   view.height_m = place.height_m;
   return glm::length(LocalFrame(kWgs84, view).EnuFromGeodetic(place).xyz) < kNear_m;
 }

@@ -102,7 +102,11 @@ class LocalFrame {
 /// A rigid transform from one local frame (east, north, up) to another of the same ellipsoid.
 class FrameTransform {
  public:
+  /// Two frames that are the same.
+  FrameTransform() = default;
   FrameTransform(const LocalFrame& to, const LocalFrame& from);
+  /// A frame whose axes are parallel to those of the frame `to`. @param origin_m  of the frame `from`.
+  explicit FrameTransform(const glm::dvec3& origin_m) : origin_m_(origin_m) {}
 
   /// Returns a point [m] of the frame `from` in the frame `to`.
   [[nodiscard]] glm::dvec3 Point(const glm::dvec3& point_m) const {
@@ -110,6 +114,10 @@ class FrameTransform {
   }
   /// Returns a direction of the frame `from` in the frame `to`.
   [[nodiscard]] glm::dvec3 Along(const glm::dvec3& direction) const { return axes_ * direction; }
+  /// Returns a direction of the frame `to` in the frame `from`.
+  [[nodiscard]] glm::dvec3 AlongBack(const glm::dvec3& direction) const {
+    return direction * axes_;
+  }
   /// Returns a point [m] of the frame `to` in the frame `from`.
   [[nodiscard]] glm::dvec3 PointBack(const glm::dvec3& point_m) const {
     return (point_m - origin_m_) * axes_;
@@ -121,8 +129,8 @@ class FrameTransform {
   [[nodiscard]] const glm::dvec3& origin_m() const { return origin_m_; }
 
  private:
-  glm::dmat3 axes_;
-  glm::dvec3 origin_m_;
+  glm::dmat3 axes_{1.0};
+  glm::dvec3 origin_m_{0.0};
 };
 
 /// Returns the distance between the origins of two frames of the same ellipsoid [m].

@@ -67,14 +67,15 @@ renderer::Scene SceneFrom(const SceneDescription& description) {
 }  // namespace
 
 SceneDescription BuiltInScene() {
-  const renderer::BuiltInView view = renderer::ProceduralMountainsViewAboveGround(
+  const atmosphere::CameraPose view = renderer::ProceduralMountainsViewAboveGround(
       {renderer::kHomeLatitude, renderer::kHomeLongitude, 0.0});
   SceneDescription scene;
-  scene.place = {view.eye.latitude_deg, view.eye.longitude_deg};
-  scene.camera = {.height_m = view.eye.height_m,
-                  .heading_deg = view.heading_deg,
-                  .pitch_deg = view.pitch_deg,
-                  .fov_deg = view.fov_deg};
+  scene.place = {view.place.latitude_deg,
+                 view.place.longitude_deg};
+  scene.camera = {.height_m = view.place.height_m,
+                  .heading_deg = view.heading_rad / kRadiansPerDegree,
+                  .pitch_deg = view.pitch_rad / kRadiansPerDegree,
+                  .fov_deg = view.fov_rad / kRadiansPerDegree};
   return scene;
 }
 

@@ -40,6 +40,7 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/time_place/camera_pose.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/layer.h"
@@ -56,17 +57,6 @@ inline constexpr double kSamePlace_m = 0.5;
 
 /// Function that returns the height of the ground above the ellipsoid [m] at a place.
 using GroundHeight = std::function<double(const Place&)>;
-
-/// Position and orientation of a camera. Angles are defined as in Camera.
-struct CameraPose {
-  Place place;  // above the ellipsoid
-  double heading_rad = 0.0;
-  double pitch_rad = 0.0;
-  double roll_rad = 0.0;
-  double fov_rad = 1.0471975511965976;
-
-  bool operator==(const CameraPose&) const = default;
-};
 
 struct CameraPathPoint {
   double time_s = 0.0;

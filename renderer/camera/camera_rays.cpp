@@ -199,16 +199,15 @@ std::array<double, 2> PixelSamples::Point(int sample, SampleOf decision) const {
           InUnit(Mirrored(ScrambledUpwards(MirroredSobolSecond(index), Mixed(seed + 2U))))};
 }
 
-CameraRays::CameraRays(const Camera& camera, int width, int height, const CameraStand& stand)
+CameraRays::CameraRays(const Camera& camera, int width, int height, const FrameTransform& from_eye)
     : width_(width),
       height_(height),
       panorama_(camera.IsPanorama()),
       tangent_(std::tan(0.5 * camera.fov_rad)),
-      eye_(stand.eye),
+      eye_(from_eye.origin_m()),
       polariser_rad_(camera.polariser_rad) {
   const ViewAxes axes = AxesFromAngles(camera.heading_rad, camera.pitch_rad, camera.roll_rad);
-  axes_ = {stand.frame_from_enu * axes.right, stand.frame_from_enu * axes.up,
-           stand.frame_from_enu * axes.forward};
+  axes_ = {from_eye.Along(axes.right), from_eye.Along(axes.up), from_eye.Along(axes.forward)};
   if (camera.lens && !panorama_) {
     const ThinLens& lens = *camera.lens;
     lens_ = Lens{Iris(lens.blades, lens.blade_rotation_rad),

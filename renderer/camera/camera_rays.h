@@ -68,6 +68,7 @@
 #include <vector>
 
 #include "atmosphere/math/view_axes.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {
@@ -160,19 +161,13 @@ struct ArrivingRay {
   double x, y;
 };
 
-/// Position and orientation of a camera in a frame. Columns of `frame_from_enu`: local east, north,
-/// up.
-struct CameraStand {
-  glm::dvec3 eye{0.0};
-  glm::dmat3 frame_from_enu{1.0};
-};
-
 /// Rays of a pinhole or thin lens (perspective), or of a panorama (latitude-longitude: the centre
 /// looks along the heading, the left edge backwards).
 class CameraRays {
  public:
   /// @param width, height  of the picture in pixels, >= 1. A panorama has no lens.
-  CameraRays(const Camera& camera, int width, int height, const CameraStand& stand = {});
+  /// @param from_eye  from east, north, up at the eye to the frame of the rays.
+  CameraRays(const Camera& camera, int width, int height, const FrameTransform& from_eye = {});
 
   /// Returns the unit direction through a point of the picture and the centre of the lens: x in
   /// [0, width] to the right, y in [0, height] down.

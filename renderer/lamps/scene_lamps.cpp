@@ -45,10 +45,11 @@ class LampPacking {
   [[nodiscard]] GpuLamp Packed(const ChosenLamp& chosen, bool with_core) const {
     const PlacedLamp& placed = *chosen.placed;
     const LampAlongRay along = AlongRay(placed, placed.direction, view_.pixel_angle_rad);
-    const double z_eye = placed.air.AltitudeOf(view_.eye_m);
+    const double z_eye = placed.air.AltitudeOf(view_.from_eye.origin_m());
     const double z_lamp = placed.air.AltitudeOf(placed.lamp.position_m);
     GpuLamp gpu{};
-    gpu.position = {Turned(placed.lamp.position_m - view_.eye_m), along.lamp.radius_m};
+    gpu.position = {Turned(placed.lamp.position_m - view_.from_eye.origin_m()),
+                    along.lamp.radius_m};
     gpu.intensity = FloatsOf(placed.intensity.value, placed.intensity.count);
     gpu.axis = {Turned(placed.lamp.axis), static_cast<float>(placed.lamp.profile.kind)};
     gpu.side = {Turned(placed.lamp.side), static_cast<float>(chosen.table)};
@@ -64,7 +65,7 @@ class LampPacking {
 
  private:
   [[nodiscard]] glm::vec3 Turned(const glm::dvec3& of_ground) const {
-    return view_.eye_from_ground * of_ground;
+    return view_.from_eye.AlongBack(of_ground);
   }
   /// Returns the relative size of a lamp's core. Beams have a larger one, because their light
   /// changes over smaller angles than that of a lamp that shines evenly.
@@ -117,9 +118,9 @@ void PutColours(const BandColour& colour, LampsBlock& block) {
 
 }  // namespace
 
-LampView LampViewFrom(const LocalFrame& ground, const Place& eye, double pixel_angle_rad) {
-  const FrameTransform from_eye(ground, LocalFrame(ground.ellipsoid(), eye));
-  return {from_eye.origin_m(), glm::transpose(from_eye.axes()), eye.height_m, pixel_angle_rad};
+LampView LampViewFrom(const LocalFrame& ground, const Place& eye,
+                      double pixel_angle_rad) {
+  return {{ground, LocalFrame(ground.ellipsoid(), eye)}, eye.height_m, pixel_angle_rad};
 }
 
 LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLayer>& layers,
@@ -141,8 +142,9 @@ LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLay
                   0.0};
   PutAir(layers, medium.wavelengths_nm.size(), reference_m, block);
   PutColours(colour, block);
+  const glm::dmat3 eye_from_ground = glm::transpose(view.from_eye.axes());
   for (glm::length_t axis = 0; axis < 3; ++axis) {
-    block.ground[static_cast<std::size_t>(axis)] = {glm::vec3(view.eye_from_ground[axis]), 0.0F};
+    block.ground[static_cast<std::size_t>(axis)] = {glm::vec3(eye_from_ground[axis]), 0.0F};
   }
   const LampPacking packing(view, reference_m, medium.planet_radius_m);
   for (std::size_t i = 0; i < lamps.size(); ++i) {
@@ -183,7 +185,7 @@ glm::vec4 ScaledInFloats(const Bands<float>& bands, double scale) {
 }
 
 LampDisk DiskOf(const PlacedLamp& lamp, const LampView& view) {
-  const glm::vec3 towards = view.eye_from_ground * lamp.direction;
+  const glm::vec3 towards = view.from_eye.AlongBack(lamp.direction);
   return {{towards, lamp.lamp.radius_m / lamp.distance_m},
           ScaledInFloats(lamp.towards_eye, 1.0 / (lamp.distance_m * lamp.distance_m)),
           {lamp.distance_m, 0.0, 0.0, 0.0}};
@@ -293,27 +295,27 @@ ChosenLamp SceneLamps::Choose(std::uint32_t node) const {
 }
 
 PlacedLamp SceneLamps::Landing(const LampView& view) const {
-  const glm::dmat3 ground_from_eye = glm::transpose(view.eye_from_ground);
   PlacedLamp placed;
-  placed.lamp.position_m = view.eye_m + ground_from_eye * landing_->offset_m;
+  placed.lamp.position_m = view.from_eye.Point(landing_->offset_m);
   placed.lamp.radius_m = landing_->radius_m;
   placed.lamp.profile.kind = LampProfile::Kind::kCone;
   placed.lamp.profile.inner_rad = landing_->inner_rad;
   placed.lamp.profile.outer_rad = landing_->outer_rad;
-  placed.lamp.axis = ground_from_eye * landing_->axis;
+  placed.lamp.axis = view.from_eye.Along(landing_->axis);
   placed.candela = landing_->intensity_cd;
   placed.intensity = LampIntensity(landing_->temperature_k, landing_->intensity_cd,
                                    medium_.wavelengths_nm, colour_);
   // Mean over a cone, accurate to a tenth. It determines the light that the illuminated air, spread
   // evenly, brings to the ground.
   placed.mean_share = 0.5 * (1.0 - std::cos(0.5 * (landing_->inner_rad + landing_->outer_rad)));
-  return renderer::Before({view.eye_m, std::nullopt}, stage_, std::move(placed));
+  return renderer::Before({view.from_eye.origin_m(), std::nullopt}, stage_, std::move(placed));
 }
 
 SceneLamps::InView SceneLamps::Before(const LampView& view, std::array<double, 2> core_rad,
                                       double dimmest_cd_per_m2, std::size_t most) {
-  if (stands_at_m_ != view.eye_m) tree_.StandBefore({view.eye_m, std::nullopt}, stage_);
-  stands_at_m_ = view.eye_m;
+  if (stands_at_m_ != view.from_eye.origin_m())
+    tree_.StandBefore({view.from_eye.origin_m(), std::nullopt}, stage_);
+  stands_at_m_ = view.from_eye.origin_m();
   InView in_view;
   std::vector<ChosenLamp> chosen;
   std::optional<PlacedLamp> landing;

@@ -56,11 +56,9 @@ struct LampsBlock {
 static_assert(sizeof(LampsBlock) == (16 + 10 * kMostGpuLamps) * sizeof(glm::vec4));
 static_assert(sizeof(LampsBlock) <= 16384);  // the minimum of GL_MAX_UNIFORM_BLOCK_SIZE
 
-/// View of the lamps: position, orientation and resolution.
+/// What a view asks of the lamps.
 struct LampView {
-  glm::dvec3 eye_m{0.0};  // in the frame of SceneGround
-  glm::dmat3 eye_from_ground{
-      1.0};                 // rotates directions from that frame to east, north, up at the eye
+  FrameTransform from_eye;  // from east, north, up at the eye to the frame of SceneGround
   double altitude_m = 0.0;  // of the eye above the sphere
   double pixel_angle_rad = 1e-3;
 };

@@ -183,7 +183,7 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
       !geometry.HasTerrain() && MayMoveSea(frame.limb(), seen, geometric_rad, half_pixel);
   const bool moves_terrain = geometry.HasTerrain() && MostLift(frame, height_m) > half_pixel;
   if (!may_see_sun && !may_see_moon && !may_see_sea && !moves_terrain) return nullptr;
-  const glm::dmat3& frame_from_enu = observer.stand.frame_from_enu;
+  const glm::dmat3& frame_from_enu = observer.from_eye.axes();
   const SunPosition& sun = observer.bodies.sun;
   const MoonPosition& moon = observer.bodies.moon;
   auto bent = std::make_shared<RefractedViewRays>(RefractedViewRays{
@@ -421,7 +421,7 @@ void FrameContext::AddStars(const Observer& observer) {
   const double lux = Illuminance(*scene_, camera().eye(), light());
   if (!light().moon || lux > kDaylight_lux) return;
   const MoonDisk& moon = *light().moon;
-  const glm::dmat3& frame_from_enu = observer.stand.frame_from_enu;
+  const glm::dmat3& frame_from_enu = observer.from_eye.axes();
   std::vector<StarLight> lights;
   const double pixel_rad = camera().PixelAngle();
   const RefractedView view(scene_->medium(), scene_->geometry().AltitudeOf(camera().eye()));

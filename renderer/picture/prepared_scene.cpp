@@ -130,10 +130,9 @@ constexpr double kNightSky_lux = 1e-3;
 /// Returns the rotation of the moon while the shutter is open: westwards with the stars, less its
 /// own motion among them of 13.18 degrees a day (Meeus 1998, Astronomical Algorithms, chapter 47),
 /// here taken along the equator.
-glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand) {
+glm::dvec3 MoonTurn(double open_s, double latitude_rad, const FrameTransform& from_eye) {
   constexpr double kBack_rad_per_s = 13.17640 / kSecondsPerDay * kRadiansPerDegree;
-  const glm::dvec3 pole =
-      stand.frame_from_enu * glm::dvec3(0.0, std::cos(latitude_rad), std::sin(latitude_rad));
+  const glm::dvec3 pole = from_eye.Along({0.0, std::cos(latitude_rad), std::sin(latitude_rad)});
   return -(kEarthRotation_rad_per_s - kBack_rad_per_s) * open_s * pole;
 }
 
@@ -143,11 +142,12 @@ Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sampl
   const SceneGround& ground = scene.ground();
   const Place& place = scene.scene().place;
   const auto pose = camera_sample.middle();
-  const CameraStand stand = pose ? StandAt(ground, pose->place) : StandOfScene(ground);
-  if (camera_sample.bodies) return {stand, *camera_sample.bodies};
+  const FrameTransform from_eye = pose ? FromEyeAt(ground, pose->place) : FromSceneEye(ground);
+  if (camera_sample.bodies) return {from_eye, *camera_sample.bodies};
   const Place eye =
-      pose ? pose->place : Place{place.latitude_deg, place.longitude_deg, ground.eye_height_m};
-  return {stand, SkyBodiesAt(eye, camera_sample.instant)};
+      pose ? pose->place
+           : Place{place.latitude_deg, place.longitude_deg, ground.eye_height_m};
+  return {from_eye, SkyBodiesAt(eye, camera_sample.instant)};
 }
 
 double IlluminanceBy(const PreparedScene& scene, const DistantLight& source, const glm::dvec3& eye,
@@ -173,28 +173,27 @@ namespace {
 void AddNight(const PreparedScene& scene, const Observer& observer, Lighting& light) {
   const Medium& medium = scene.medium();
   const SceneGeometry& geometry = scene.geometry();
-  const CameraStand& stand = observer.stand;
+  const glm::dvec3& eye = observer.from_eye.origin_m();
   light.moon_colour = MoonColour(*light.moon, medium.wavelengths_nm);
-  const double sun_lux = Illuminance(scene, stand.eye, light);
+  const double sun_lux = Illuminance(scene, eye, light);
   if (sun_lux > kDaylight_lux) return;
   const DistantLight moonlight =
       MoonlightOf(*light.moon, observer.bodies, light.moon_colour, light.WholeSun());
-  const double moon_lux = IlluminanceBy(scene, moonlight, stand.eye, light);
+  const double moon_lux = IlluminanceBy(scene, moonlight, eye, light);
   if (moon_lux > kUnseenShare * (sun_lux + kNightSky_lux)) light.moonlight = moonlight;
   const double depression_rad =
-      -std::asin(glm::dot(light.source.direction.for_air, geometry.UpAt(stand.eye)));
-  light.shows =
-      sun_lux > kUnseenShare * (moon_lux + kNightSky_lux) ||
-      depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(stand.eye), geometry.radius_m(),
-                                           medium.atmosphere_height_m);
+      -std::asin(glm::dot(light.source.direction.for_air, geometry.UpAt(eye)));
+  light.shows = sun_lux > kUnseenShare * (moon_lux + kNightSky_lux) ||
+                depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(eye), geometry.radius_m(),
+                                                     medium.atmosphere_height_m);
   const std::optional<BandLight>& towns = scene.towns();
   const double towns_lux =
       towns ? kPi * scene.colour().Xyz(InDouble(*towns))[1] : 0.0;  // upper bound
   if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
   light.night = std::make_shared<NightLight>(
-      NightSky(observer.bodies.place, observer.bodies.instant).InFrame(stand.frame_from_enu),
-      scene.air().whole().air.single_scattering(), scene.colour(), geometry.UpAt(stand.eye),
-      geometry.AltitudeOf(stand.eye), towns);
+      NightSky(observer.bodies.place, observer.bodies.instant).InFrame(observer.from_eye.axes()),
+      scene.air().whole().air.single_scattering(), scene.colour(), geometry.UpAt(eye),
+      geometry.AltitudeOf(eye), towns);
 }
 
 }  // namespace
@@ -203,7 +202,7 @@ Lighting LightingAt(const PreparedScene& scene, const Observer& observer) {
   const Medium& medium = scene.medium();
   const BendingAir air = GentleAirOf(medium);
   const SkyBodies& bodies = observer.bodies;
-  const glm::dmat3& frame_from_enu = observer.stand.frame_from_enu;
+  const glm::dmat3& frame_from_enu = observer.from_eye.axes();
   const SunPosition sun = bodies.ApparentSun(air);
   Lighting light =
       LightingOf(sun, bodies.instant, scene.scene().place, medium, scene.scene().ground.wetness);
@@ -218,7 +217,7 @@ Lighting LightingAt(const PreparedScene& scene, const Observer& observer) {
   light.moon->direction = frame_from_enu * light.moon->direction;
   light.moon->to_sun = frame_from_enu * light.moon->to_sun;
   light.moon_turn =
-      MoonTurn(scene.scene().camera.shutter_s, bodies.place.latitude_rad(), observer.stand);
+      MoonTurn(scene.scene().camera.shutter_s, bodies.place.latitude_rad(), observer.from_eye);
   AddNight(scene, observer, light);
   return light;
 }

@@ -168,12 +168,12 @@ class PreparedScene {
 
 /// The eye of a picture, and sun and moon at its instant.
 struct Observer {
-  CameraStand stand;  // of the eye, in the frame of the scene
-  SkyBodies bodies;   // from the place of the eye
+  FrameTransform from_eye;  // to the frame of the scene
+  SkyBodies bodies;         // from the place of the eye
 };
 
 /// Returns the observer of the middle pose, or the scene's own. Takes sun and moon from the shot if
-/// it has them. Throws InputError as StandAt does.
+/// it has them. Throws InputError as FromEyeAt does.
 [[nodiscard]] Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sample);
 
 /// Returns the light of sun, moon and night sky, each if it may be visible, in the scene's frame.

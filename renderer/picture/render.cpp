@@ -327,7 +327,8 @@ SkyBodies SceneRenderer::BodiesOver(const CameraSample& camera_sample) const {
 
 double SceneRenderer::Illuminance(const CameraSample& camera_sample) const {
   const Observer observer = ObserverOf(*scene_, camera_sample);
-  return renderer::Illuminance(*scene_, observer.stand.eye, LightingAt(*scene_, observer));
+  return renderer::Illuminance(*scene_, observer.from_eye.origin_m(),
+                               LightingAt(*scene_, observer));
 }
 
 Image SceneRenderer::Render(const CameraSample& camera_sample,

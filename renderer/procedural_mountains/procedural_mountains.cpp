@@ -375,18 +375,22 @@ ElevationGrid ProceduralMountainsExtent(const Place& centre) {
   return GridAt(centre, GridOf(kRangeSize));
 }
 
-BuiltInView ProceduralMountainsViewAboveGround(const Place& centre) {
+CameraPose ProceduralMountainsViewAboveGround(const Place& centre) {
   constexpr double kAboveGround_m = 60.0;
-  BuiltInView view{{}, 161.0, 0.5, 50.0};
+  constexpr double kHeading_deg = 161.0;
+  CameraPose view{.place = {},
+                  .heading_rad = kHeading_deg * kRadiansPerDegree,
+                  .pitch_rad = 0.5 * kRadiansPerDegree,
+                  .fov_rad = 50.0 * kRadiansPerDegree};
   if (IsPolar(centre)) {
     const PolarMap map(centre);
-    view.eye = map.At(kRangeViewEast_m, kRangeViewNorth_m);
-    const double heading = view.heading_deg - map.Convergence(view.eye) / kRadiansPerDegree;
-    view.heading_deg = heading - 360.0 * std::floor(heading / 360.0);
+    view.place = map.At(kRangeViewEast_m, kRangeViewNorth_m);
+    const double heading = kHeading_deg - map.Convergence(view.place) / kRadiansPerDegree;
+    view.heading_rad = (heading - 360.0 * std::floor(heading / 360.0)) * kRadiansPerDegree;
   } else {
-    view.eye = BoxMap(centre).At(kRangeViewEast_m, kRangeViewNorth_m);
+    view.place = BoxMap(centre).At(kRangeViewEast_m, kRangeViewNorth_m);
   }
-  view.eye.height_m = kAboveGround_m;
+  view.place.height_m = kAboveGround_m;
   return view;
 }
 
@@ -396,13 +400,13 @@ Place CentreOfRangeSeenFrom(const Place& place) {
                          : centre;
 }
 
-BuiltInView ProceduralMountainsView(const Place& centre, const ElevationGrid& range) {
-  BuiltInView view = ProceduralMountainsViewAboveGround(centre);
+CameraPose ProceduralMountainsView(const Place& centre, const ElevationGrid& range) {
+  CameraPose view = ProceduralMountainsViewAboveGround(centre);
   const std::optional<double> ground =
-      range.HeightAt(view.eye.latitude_rad(), view.eye.longitude_rad());
+      range.HeightAt(view.place.latitude_rad(), view.place.longitude_rad());
   if (!ground)
     throw InternalError("the built-in view lies outside the range that it was asked for");
-  view.eye.height_m += *ground;
+  view.place.height_m += *ground;
   return view;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "atmosphere/time_place/camera_pose.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/elevation/elevation.h"
 #include "renderer/layer.h"
@@ -30,25 +31,18 @@ inline constexpr std::uint64_t kProceduralMountainsFingerprint = 157840461224485
 /// them.
 [[nodiscard]] std::vector<float> MadeRangeHeights(std::uint32_t seed);
 
-/// Position and direction of a view.
-struct BuiltInView {
-  Place eye;
-  double heading_deg = 0.0;  // clockwise from north
-  double pitch_deg = 0.0;    // up is positive
-  double fov_deg = 0.0;      // horizontal
-};
-
 /// Returns the view that the range was designed for: from a shoulder of the foothills to the
 /// highest peak, chain behind chain, east at the left.
-[[nodiscard]] BuiltInView ProceduralMountainsView(const Place& centre, const ElevationGrid& range);
+[[nodiscard]] CameraPose ProceduralMountainsView(const Place& centre,
+                                                 const ElevationGrid& range);
 
 /// Height of the ground [m] at the position of the view, known before a range is made. It is equal
 /// for all seeds to a centimetre; beside a pole, where the heights are resampled, to some metres.
 inline constexpr double kRangeViewGround_m = 2084.44;
 
-/// Returns ProceduralMountainsView without the heights of the range: eye.height_m is relative to
+/// Returns ProceduralMountainsView without the heights of the range: place.height_m is relative to
 /// the ground.
-[[nodiscard]] BuiltInView ProceduralMountainsViewAboveGround(const Place& centre);
+[[nodiscard]] CameraPose ProceduralMountainsViewAboveGround(const Place& centre);
 
 /// Returns the centre of the range whose built-in view is at a place, to a micrometre. A centre
 /// beyond a pole keeps its meridian: its latitude exceeds 90 degrees. The view is 2 km east of its

@@ -27,12 +27,6 @@ std::filesystem::path DataOfGrid(const Volume& volume) {
   }
 }
 
-struct View {
-  Place place;
-  Height height;
-  double heading, pitch, fov;
-};
-
 /// Returns the place of the options on the ellipsoid, if they give one.
 std::optional<Place> PlaceTyped(const SceneOptions& options) {
   if (!options.place && !options.latitude && !options.longitude) return std::nullopt;
@@ -66,14 +60,15 @@ TerrainSource ElevationModelsOf(const std::vector<std::string>& dem) {
   return terrain;
 }
 
-/// Returns the default view: that of the range, or horizontally to the north.
-View ViewOf(const TerrainSource& terrain, const std::optional<Place>& typed) {
-  if (terrain.kind == TerrainSource::Kind::kElevationModel)
-    return {typed.value_or(Home()), Height{}, 0.0, 0.0, 60.0};
-  const BuiltInView view = ProceduralMountainsViewAboveGround(*terrain.centre);
-  Place place = typed.value_or(view.eye);
-  place.height_m = 0.0;
-  return {place, Height{view.eye.height_m, true}, view.heading_deg, view.pitch_deg, view.fov_deg};
+/// Returns the default view: that of the range, or horizontally to the north. Its height is above the
+/// ground.
+CameraPose ViewOf(const TerrainSource& terrain, const std::optional<Place>& typed) {
+  CameraPose view{.place = Home()};
+  view.place.height_m = Height{}.value_m;
+  if (terrain.kind != TerrainSource::Kind::kElevationModel)
+    view = ProceduralMountainsViewAboveGround(*terrain.centre);
+  if (typed) view.place = {typed->latitude_deg, typed->longitude_deg, view.place.height_m};
+  return view;
 }
 
 Height HeightFrom(const SceneOptions& options, const Height& fallback) {
@@ -158,12 +153,14 @@ Scene SceneFromOptions(const SceneOptions& options) {
   const std::optional<Place> typed = PlaceTyped(options);
   Scene scene;
   scene.terrain = options.dem.empty() ? RangeOf(typed) : ElevationModelsOf(options.dem);
-  const View view = ViewOf(scene.terrain, typed);
-  scene.place = view.place;
+  const CameraPose view = ViewOf(scene.terrain, typed);
+  const auto degrees = [](double radians) { return radians / kRadiansPerDegree; };
+  scene.place = {view.place.latitude_deg, view.place.longitude_deg, 0.0};
   scene.time = ParseInstant("2026-06-21T12:00:00Z");
-  scene.camera = CameraFromDegrees(
-      HeightFrom(options, view.height), options.heading.value_or(view.heading),
-      options.pitch.value_or(view.pitch), 0.0, options.fov.value_or(view.fov), "--");
+  scene.camera = CameraFromDegrees(HeightFrom(options, {view.place.height_m, true}),
+                                   options.heading.value_or(degrees(view.heading_rad)),
+                                   options.pitch.value_or(degrees(view.pitch_rad)), 0.0,
+                                   options.fov.value_or(degrees(view.fov_rad)), "--");
   scene.medium = MediumFromChoice(options.atmosphere.value_or("earth"), kForPictures);
   if (options.bortle) {
     RequireInRange(*options.bortle, 1.0, 9.0, "--bortle");

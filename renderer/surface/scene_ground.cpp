@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/angles.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/elevation/mesh.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
@@ -258,24 +259,18 @@ std::string TextOf(const Place& place) {
 }
 
 /// Throws InputError if the place is too far from the scene's place.
-CameraStand StandOver(const SceneGround& ground, const Place& place) {
-  const LocalFrame there(ground.frame.ellipsoid(), place);
-  const auto in_frame = [&](const glm::dvec3& axis) {
-    return ground.frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{axis})).xyz;
-  };
-  const CameraStand stand{
-      ground.frame.EnuFromGeodetic(place).xyz,
-      {in_frame({1.0, 0.0, 0.0}), in_frame({0.0, 1.0, 0.0}), in_frame({0.0, 0.0, 1.0})}};
+FrameTransform FromPlace(const SceneGround& ground, const Place& place) {
+  const FrameTransform from_place(ground.frame, LocalFrame(ground.frame.ellipsoid(), place));
   constexpr double kFarthest_m = 500e3;
   const double radius_m = ground.frame.ellipsoid().equatorial_radius_m;
-  const double along_m = radius_m * std::acos(std::min(stand.frame_from_enu[2].z, 1.0));
+  const double along_m = radius_m * std::acos(std::min(from_place.axes()[2].z, 1.0));
   if (along_m > kFarthest_m) {
     throw InputError(
         fmt::format("{} is {:.0f} km from the scene's place; at most {:.0f} km can be "
                     "shown from one frame",
                     TextOf(place), 1e-3 * along_m, 1e-3 * kFarthest_m));
   }
-  return stand;
+  return from_place;
 }
 
 }  // namespace
@@ -314,7 +309,8 @@ std::optional<double> GroundUnderEye(const Terrain& terrain, const LocalFrame& f
 }
 
 double HorizonDip(double height_m) {
-  return std::acos(kEarth_m / (kEarth_m + std::max(height_m, 0.0)));
+  const double over_m = std::max(height_m, 0.0);
+  return DipOfHorizon(over_m, kEarth_m + over_m);
 }
 
 GridWindow WindowAround(const ElevationGrid& grid, const Place& place, double distance_rad) {
@@ -386,8 +382,8 @@ SceneGround LoadGround(const Scene& scene, Progress* progress) {
           loaded.is_whole && under_eye.has_value()};
 }
 
-CameraStand StandOfScene(const SceneGround& ground) {
-  return {{0.0, 0.0, ground.eye_height_m}, glm::dmat3(1.0)};
+FrameTransform FromSceneEye(const SceneGround& ground) {
+  return FrameTransform({0.0, 0.0, ground.eye_height_m});
 }
 
 void RequireOverGround(const Place& eye, double ground_m) {
@@ -397,26 +393,26 @@ void RequireOverGround(const Place& eye, double ground_m) {
                                ground_m == 0.0 ? "0" : fmt::format("{:.1f}", ground_m)));
 }
 
-CameraStand StandAt(const SceneGround& ground, const Place& place) {
-  const CameraStand stand = StandOver(ground, place);
+FrameTransform FromEyeAt(const SceneGround& ground, const Place& place) {
+  const FrameTransform from_eye = FromPlace(ground, place);
   if (!ground.terrain) {
     RequireOverGround(place, 0.0);
   } else if (const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place)) {
     RequireOverGround(place, there->lowest_m);
   }
-  return stand;
+  return from_eye;
 }
 
 double GroundHeightUnder(const SceneGround& ground, const Place& place) {
   if (!ground.terrain) return 0.0;
-  StandOver(ground, place);  // throws if the place is too far away
+  FromPlace(ground, place);  // throws if the place is too far away
   const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place);
   return there ? there->highest_m : 0.0;
 }
 
 MovingCamera CameraOn(const SceneGround& ground, const Camera& camera,
                       std::span<const CameraPose> poses, int width, int height) {
-  if (poses.empty()) return CameraRays(camera, width, height, StandOfScene(ground));
+  if (poses.empty()) return CameraRays(camera, width, height, FromSceneEye(ground));
   std::vector<CameraRays> steps;
   for (const CameraPose& pose : poses) {
     Camera there = camera;
@@ -424,7 +420,7 @@ MovingCamera CameraOn(const SceneGround& ground, const Camera& camera,
     there.pitch_rad = pose.pitch_rad;
     there.roll_rad = pose.roll_rad;
     there.fov_rad = pose.fov_rad;
-    steps.emplace_back(there, width, height, StandAt(ground, pose.place));
+    steps.emplace_back(there, width, height, FromEyeAt(ground, pose.place));
   }
   return MovingCamera(std::move(steps));
 }

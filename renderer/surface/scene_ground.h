@@ -102,13 +102,13 @@ struct SceneGround {
 /// Throws InputError if an eye is below ground of this height above the ellipsoid [m].
 void RequireOverGround(const Place& eye, double ground_m);
 
-/// Returns the scene's own eye.
-[[nodiscard]] CameraStand StandOfScene(const SceneGround& ground);
+/// Returns the transform from the scene's own eye to the frame of the scene.
+[[nodiscard]] FrameTransform FromSceneEye(const SceneGround& ground);
 
-/// Returns an eye at another place, in the frame of the scene. Throws InputError if the eye is
+/// Returns the transform from an eye at another place to the frame of the scene. Throws InputError if the eye is
 /// below the ground (with several surfaces: below the lowest), or more than 500 km from the scene's
 /// place.
-[[nodiscard]] CameraStand StandAt(const SceneGround& ground, const Place& place);
+[[nodiscard]] FrameTransform FromEyeAt(const SceneGround& ground, const Place& place);
 
 /// Returns the height of a scene's ground above the ellipsoid [m] at a place: that of the highest
 /// surface, or 0 if there is none. Throws InputError more than 500 km from the scene's place.

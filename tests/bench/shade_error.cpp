@@ -64,11 +64,10 @@ glm::dvec3 InMesh(const View& view, const glm::dvec3& direction) {
 View TheView() {
   const Place centre{46.5, 8.0, 0.0};
   ElevationGrid grid = ProceduralMountains(centre);
-  const BuiltInView seen = ProceduralMountainsView(centre, grid);
-  const LocalFrame frame(kWgs84, centre), here(kWgs84, seen.eye);
+  CameraPose eye = ProceduralMountainsView(centre, grid);
+  eye.pitch_rad = 0.0;
+  const LocalFrame frame(kWgs84, centre), here(kWgs84, eye.place);
   Terrain terrain(MeshFromElevation(grid, frame));
-  const CameraPose eye{seen.eye, seen.heading_deg * kRadiansPerDegree, 0.0, 0.0,
-                       seen.fov_deg * kRadiansPerDegree};
   const ViewAxes axes = AxesOf(eye);
   const double half = std::tan(0.5 * eye.fov_rad);
   View view{std::move(grid),
@@ -77,7 +76,7 @@ View TheView() {
             half * axes.right,
             half * kHeight / kWidth * axes.up,
             axes.forward,
-            seen.eye,
+            eye.place,
             glm::dmat4(1.0),
             {}};
   for (int axis = 0; axis < 3; ++axis) {
@@ -86,7 +85,7 @@ View TheView() {
     view.mesh_from_eye[axis] =
         glm::dvec4(frame.EnuFromEcef(here.EcefFromEnu(Vector<Enu>{unit})).xyz, 0.0);
   }
-  view.mesh_from_eye[3] = glm::dvec4(frame.EnuFromGeodetic(seen.eye).xyz, 1.0);
+  view.mesh_from_eye[3] = glm::dvec4(frame.EnuFromGeodetic(eye.place).xyz, 1.0);
   view.distance_m.resize(static_cast<std::size_t>(kWidth) * kHeight);
   tbb::parallel_for(0, kHeight, [&](int y) {
     for (int x = 0; x < kWidth; ++x) {

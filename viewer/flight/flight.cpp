@@ -48,10 +48,6 @@ CameraPose Placed(const CameraPose& eye, const EyePlacement& placement) {
   return placed;
 }
 
-ViewAxes AxesOf(const CameraPose& eye) {
-  return AxesFromAngles(eye.heading_rad, eye.pitch_rad, eye.roll_rad);
-}
-
 double SpeedAt(double above_ground_m) {
   constexpr double kSlowest_m_per_s = 2.0;
   constexpr double kHeightsPerSecond = 0.3;

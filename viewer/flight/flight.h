@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/math/view_axes.h"
+#include "atmosphere/time_place/camera_pose.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/scene/places.h"
@@ -40,9 +40,6 @@ struct Steering {
   double pitch_up = 0.0;
   double roll_right = 0.0;
 };
-
-/// Returns the unit axes of the view, in the frame east, north, up at the eye.
-[[nodiscard]] ViewAxes AxesOf(const CameraPose& eye);
 
 /// Returns the speed of the free camera [m/s] at a height over the ground: walking pace at the
 /// ground, the height of a mountain in seconds above it, kilometres per second in orbit.

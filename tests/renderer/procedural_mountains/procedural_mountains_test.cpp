@@ -77,11 +77,11 @@ TEST(ProceduralMountains, AnotherSeedHasOtherMountainsAndTheSameView) {
   EXPECT_GT(far_apart, static_cast<int>(other.height_m.size()) / 10) << "half of it are mountains";
   EXPECT_GE(Quantile(other.height_m, 0.0), 0.0);
   EXPECT_GT(Quantile(other.height_m, 1.0), 3300.0);
-  const BuiltInView view = ProceduralMountainsViewAboveGround(centre);
+  const CameraPose view = ProceduralMountainsViewAboveGround(centre);
   for (const ElevationGrid& range : {TheRange(), other}) {
     // Bilinear heights differ by up to a metre from those of the triangles, which define the
     // constant.
-    EXPECT_NEAR(range.HeightAt(view.eye.latitude_rad(), view.eye.longitude_rad()).value(),
+    EXPECT_NEAR(range.HeightAt(view.place.latitude_rad(), view.place.longitude_rad()).value(),
                 kRangeViewGround_m, 2.0);
   }
 }
@@ -169,8 +169,8 @@ struct Sight {
 
 Sight Look(const Place& centre) {
   const ElevationGrid range = ProceduralMountains(centre);
-  const BuiltInView view = ProceduralMountainsView(centre, range);
-  const LocalFrame frame(kWgs84, view.eye);
+  const CameraPose view = ProceduralMountainsView(centre, range);
+  const LocalFrame frame(kWgs84, view.place);
   const Terrain terrain(MeshFromElevation(range, frame));
   const auto direction = [](double azimuth_deg, double elevation_deg) {
     const double a = azimuth_deg * kRadiansPerDegree;
@@ -193,14 +193,15 @@ Sight Look(const Place& centre) {
   const auto hit = terrain.Intersect({0.0, 0.0, 0.0}, summit - glm::dvec3(0.0, 0.0, 5.0));
   if (hit && hit->distance_m > glm::length(summit) - 300.0) {
     sight.summit_in_view_deg = std::remainder(
-        std::atan2(summit.x, summit.y) / kRadiansPerDegree - view.heading_deg, 360.0);
+        std::atan2(summit.x, summit.y) / kRadiansPerDegree - view.heading_rad / kRadiansPerDegree,
+        360.0);
   }
   for (double azimuth = -24.0; azimuth <= 24.0; azimuth += 2.0) {
     double last = 0.0;
     int ridges = 0;
     for (double elevation = -15.0; elevation <= 12.0; elevation += 0.05) {
-      const auto seen =
-          terrain.Intersect({0.0, 0.0, 0.0}, direction(view.heading_deg + azimuth, elevation));
+      const auto seen = terrain.Intersect(
+          {0.0, 0.0, 0.0}, direction(view.heading_rad / kRadiansPerDegree + azimuth, elevation));
       if (!seen) continue;
       if (seen->distance_m > last + 2000.0) ++ridges;
       last = seen->distance_m;
@@ -221,10 +222,11 @@ TEST(ProceduralMountainsView, ShowsTheHighestPeakEvenNearThePoles) {
     EXPECT_GT(sight.farthest_m, 40e3);
     EXPECT_GE(sight.ridges, 4) << "chain behind chain";
   }
-  const BuiltInView view = ProceduralMountainsView(Place{46.5, 8.0}, TheRange());
-  EXPECT_NEAR(view.eye.height_m, 2000.0, 200.0);
-  EXPECT_GT(view.heading_deg, 135.0) << "south-east to south: dawn comes from the left";
-  EXPECT_LT(view.heading_deg, 180.0);
+  const CameraPose view = ProceduralMountainsView(Degrees(46.5, 8.0), TheRange());
+  EXPECT_NEAR(view.place.height_m, 2000.0, 200.0);
+  EXPECT_GT(view.heading_rad / kRadiansPerDegree, 135.0)
+      << "south-east to south: dawn comes from the left";
+  EXPECT_LT(view.heading_rad / kRadiansPerDegree, 180.0);
 }
 
 // Returns land of noise whose heights are rounded: it has many basins and samples of equal height.

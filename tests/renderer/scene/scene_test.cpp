@@ -465,7 +465,7 @@ TEST(SceneOptions, WithoutAModelTheRangeIsSeenFromItsViewpoint) {
 
 // Returns the distance [m] between the built-in view of a scene's range and the scene's place.
 double ViewOffPlace_m(const Scene& scene) {
-  Place eye = ProceduralMountainsViewAboveGround(*scene.terrain.centre).eye;
+  Place eye = ProceduralMountainsViewAboveGround(*scene.terrain.centre).place;
   eye.height_m = 0.0;
   return glm::length((EcefFromGeodetic(kWgs84, eye) - EcefFromGeodetic(kWgs84, scene.place)).xyz);
 }

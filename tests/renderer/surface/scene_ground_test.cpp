@@ -167,7 +167,7 @@ TEST_F(AMesh, HoldsEyesBetweenARoofAndTheGround) {
               HasSubstr("camera.height_m is 19.0; the ground there is at 20.0 m"));
   const SceneGround ground = LoadGround(SceneOn(tests::RoofObj(), 25.0));
   const auto on_path_at = [&](double height_m) {
-    return StandAt(ground, CheckedPlace({46.5001, 8.0001, height_m})).eye.z;
+    return FromEyeAt(ground, Place{46.5001, 8.0001, height_m}).origin_m().z;
   };
   EXPECT_NEAR(on_path_at(25.0), 25.0, 0.01);
   EXPECT_THAT(tests::FaultOf([&] { return on_path_at(19.0); }),

@@ -78,7 +78,7 @@ struct BothLamps {
         lamps(scene, ground, medium),
         painter(lamps, {}, {}),
         eye_m(0.0, 0.0, ground.eye_height_m) {
-    painter.Prepare(lamps, {eye_m, glm::dmat3(1.0), eye_m.z, kLitPixel_rad}, 0.0);
+    painter.Prepare(lamps, {FrameTransform(eye_m), eye_m.z, kLitPixel_rad}, 0.0);
   }
 
   [[nodiscard]] std::vector<float> OnGpu(const std::string& expression,
@@ -403,7 +403,7 @@ TEST_F(LampsOnTheCard, GroundIsLitWhereTheRenderersShadowRaysSaySo) {
   };
   EXPECT_GT(wrong(), 4e-3) << "the horizon around the lamp, while plans are made";
   both.lamps.WaitForPlans();
-  both.painter.Prepare(both.lamps, {both.eye_m, glm::dmat3(1.0), both.eye_m.z, kLitPixel_rad}, 0.0);
+  both.painter.Prepare(both.lamps, {FrameTransform(both.eye_m), both.eye_m.z, kLitPixel_rad}, 0.0);
   EXPECT_LT(wrong(), 2e-3) << "corners of shade";
 }
 
@@ -435,7 +435,7 @@ TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
   }
   BothLamps both(scene);
   const SceneLamps::InView in_view = both.lamps.Before(
-      {both.eye_m, glm::dmat3(1.0), both.eye_m.z, kLitPixel_rad}, {0.0, 0.0}, 0.0);
+      {FrameTransform(both.eye_m), both.eye_m.z, kLitPixel_rad}, {0.0, 0.0}, 0.0);
   EXPECT_EQ(in_view.block.count.x, 64.0F);
   EXPECT_EQ(in_view.disks.size(), std::size_t{kLamps}) << "each lamp itself is seen";
   EXPECT_LT(GlowDeviation(both, false).mean, 0.02)
@@ -447,9 +447,10 @@ TEST(LampView, OfAnEyeFarFromTheSceneTurnsItsDirectionsIntoEastNorthUpThere) {
   const LocalFrame ground(kWgs84, Place{46.5, 8.0, 0.0});
   const Place place{47.0, 9.0, 1000.0};
   const LampView view = LampViewFrom(ground, place, kLitPixel_rad);
-  EXPECT_LT(glm::length(view.eye_m - ground.EnuFromGeodetic(place).xyz), 1e-6);
-  const glm::dvec3 up = ground.EnuFromGeodetic(Place{47.0, 9.0, 2000.0}).xyz - view.eye_m;
-  EXPECT_NEAR((view.eye_from_ground * up).z, 1000.0, 1e-3)
+  EXPECT_LT(glm::length(view.from_eye.origin_m() - ground.EnuFromGeodetic(place).xyz), 1e-6);
+  const glm::dvec3 up =
+      ground.EnuFromGeodetic(Place{47.0, 9.0, 2000.0}).xyz - view.from_eye.origin_m();
+  EXPECT_NEAR(view.from_eye.AlongBack(up).z, 1000.0, 1e-3)
       << "a kilometre over the eye is up there";
 }
 
@@ -458,7 +459,7 @@ TEST_F(LampsOnTheCard, ALandingLightMovesWithTheEye) {
   LandingLight landing;
   both.lamps.SetLandingLight(landing);
   for (const double north_m : {0.0, 5000.0}) {
-    const LampView view{{0.0, north_m, 6.0}, glm::dmat3(1.0), 6.0, kLitPixel_rad};
+    const LampView view{FrameTransform({0.0, north_m, 6.0}), 6.0, kLitPixel_rad};
     const SceneLamps::InView in_view = both.lamps.Before(view, {0.0, 0.0}, 1.0);
     const auto number = static_cast<std::size_t>(in_view.block.count.w);
     const GpuLamp& lamp = in_view.block.lamps[number];
@@ -545,7 +546,7 @@ struct LampNight {
     glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
     glClear(GL_COLOR_BUFFER_BIT);
     LampPainter painter(lamps, quality, {});
-    painter.Prepare(lamps, {{0.0, 0.0, 6.0}, glm::dmat3(1.0), 6.0, kLampPixel_rad}, 0.0);
+    painter.Prepare(lamps, {FrameTransform({0.0, 0.0, 6.0}), 6.0, kLampPixel_rad}, 0.0);
     std::vector<ShaderPiece> texts =
         WithViewerPieces(SharedTexts(), {"viewer/shaders/view/block.glsl"});
     texts.insert(texts.end(), painter.texts().begin(), painter.texts().end());
