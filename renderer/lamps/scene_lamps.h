@@ -56,7 +56,7 @@ struct LampsBlock {
 static_assert(sizeof(LampsBlock) == (16 + 10 * kMostGpuLamps) * sizeof(glm::vec4));
 static_assert(sizeof(LampsBlock) <= 16384);  // the minimum of GL_MAX_UNIFORM_BLOCK_SIZE
 
-/// What a view asks of the lamps.
+/// The part of a view that the choice of lamps depends on.
 struct LampView {
   FrameTransform from_eye;  // from east, north, up at the eye to the frame of SceneGround
   double altitude_m = 0.0;  // of the eye above the sphere

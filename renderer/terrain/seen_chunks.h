@@ -23,7 +23,7 @@
 
 namespace alpenglow::renderer {
 
-/// What a view asks of the land.
+/// The part of a view that the choice of land depends on.
 struct LandView {
   /// In the frame east, north, up of the eye. The axes right and up reach from the middle of the
   /// picture to its sides, where forward is 1.

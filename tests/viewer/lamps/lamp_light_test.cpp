@@ -434,8 +434,8 @@ TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
     scene.lights.push_back(LightAt(200.0 + 30.0 * (i / 2), i % 2 == 0 ? 20.0 : -20.0, 0.5, 500.0));
   }
   BothLamps both(scene);
-  const SceneLamps::InView in_view = both.lamps.Before(
-      {FrameTransform(both.eye_m), both.eye_m.z, kLitPixel_rad}, {0.0, 0.0}, 0.0);
+  const SceneLamps::InView in_view =
+      both.lamps.Before({FrameTransform(both.eye_m), both.eye_m.z, kLitPixel_rad}, {0.0, 0.0}, 0.0);
   EXPECT_EQ(in_view.block.count.x, 64.0F);
   EXPECT_EQ(in_view.disks.size(), std::size_t{kLamps}) << "each lamp itself is seen";
   EXPECT_LT(GlowDeviation(both, false).mean, 0.02)
