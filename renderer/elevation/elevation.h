@@ -3,6 +3,16 @@
 // and reads them from files.
 //
 // Units: radians, metres above the ellipsoid. A void is a sample without data; it is NaN.
+//
+// Heights of the ground have these types, because their axes differ:
+//
+//   ElevationGrid     angles, equal steps: what readers of files and the built-in range return
+//   ElevationRaster   as in a file, mostly metres of a map projection (elevation_raster.h)
+//   HeightPyramid     a tile at all levels of detail on the lattice of all tiles (land_source.h)
+//   LoadedHeights     the tiles that are in memory (loaded_heights.h)
+//   HeightRaster      metres in the plane of a mesh's frame, from the lower left (mesh.h)
+//   MeshHeights       no grid: exact heights on the triangles of a mesh (mesh.h)
+//   Land              the built-in range before it lies on the earth: squares of metres (land.h)
 #pragma once
 
 #include <cstddef>
@@ -52,6 +62,7 @@ struct GridWindow {
 
 enum class VoidPolicy { kFill, kLeaveOpen };
 
+/// A grid with what its file says about it.
 struct ElevationModel {
   ElevationGrid grid;
   std::size_t voids = 0;         // samples without data in the file

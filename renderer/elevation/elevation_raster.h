@@ -20,7 +20,8 @@ namespace alpenglow::renderer {
 /// Largest number of samples of a model: 1 GiB of heights.
 inline constexpr std::int64_t kMostElevationSamples = std::int64_t{1} << 28;
 
-/// Heights [m] in the file's own coordinate system, north or south up.
+/// Heights [m] in the file's own coordinate system, north or south up. ReadElevation makes an
+/// ElevationGrid of it, which has angles as axes.
 struct ElevationRaster {
   int columns = 0;
   int rows = 0;

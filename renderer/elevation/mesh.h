@@ -98,7 +98,8 @@ struct MeshModel {
 /// earth is closed, also over a pole.
 [[nodiscard]] TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& frame);
 
-/// Heights z [m] over (x, y) = (first_x_m + column cell_m, first_y_m + row cell_m).
+/// Heights z [m] over (x, y) = (first_x_m + column cell_m, first_y_m + row cell_m). Cells are
+/// squares in the frame of a mesh, which those of an ElevationGrid are not.
 struct HeightRaster {
   double first_x_m = 0.0, first_y_m = 0.0;
   double cell_m = 0.0;
@@ -138,7 +139,8 @@ struct FlatRectangle {
 /// Returns the bounding rectangle of all vertices.
 [[nodiscard]] FlatRectangle RectangleOf(const TriangleMesh& mesh);
 
-/// Heights of a mesh. It is immutable and can be used by many threads. It refers to the mesh.
+/// Heights of a mesh on its triangles. It is immutable and can be used by many threads. It refers to
+/// the mesh.
 class MeshHeights {
  public:
   explicit MeshHeights(const TriangleMesh& mesh);

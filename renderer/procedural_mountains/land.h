@@ -26,7 +26,8 @@
 
 namespace alpenglow::renderer {
 
-/// Heights [m] on a square grid; row 0 is the northernmost.
+/// Heights [m] on a square grid; row 0 is the northernmost. ProceduralMountains places it on the
+/// earth, as an ElevationGrid.
 struct Land {
   int size = 0;            // samples per side
   double spacing_m = 0.0;  // between samples

@@ -180,15 +180,33 @@ std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile, E
 
 }  // namespace
 
-HeightSamples::HeightSamples(std::vector<float> height_m) {
-  if (!std::all_of(height_m.begin(), height_m.end(), IsWhole)) {
-    real_m_ = std::move(height_m);
-    return;
+/// The heights [m] of one level; NaN where there is none.
+class HeightPyramid::Level {
+ public:
+  explicit Level(std::vector<float> height_m) {
+    if (!std::all_of(height_m.begin(), height_m.end(), IsWhole)) {
+      real_m_ = std::move(height_m);
+      return;
+    }
+    whole_m_.reserve(height_m.size());
+    for (const float height : height_m)
+      whole_m_.push_back(std::isnan(height) ? kNone : static_cast<std::int16_t>(height));
   }
-  whole_m_.reserve(height_m.size());
-  for (const float height : height_m)
-    whole_m_.push_back(std::isnan(height) ? kNone : static_cast<std::int16_t>(height));
-}
+
+  [[nodiscard]] float at(std::size_t index) const {
+    if (whole_m_.empty()) return real_m_[index];
+    return whole_m_[index] == kNone ? std::numeric_limits<float>::quiet_NaN()
+                                    : static_cast<float>(whole_m_[index]);
+  }
+  [[nodiscard]] std::size_t bytes() const {
+    return sizeof(float) * real_m_.size() + sizeof(std::int16_t) * whole_m_.size();
+  }
+
+ private:
+  static constexpr std::int16_t kNone = std::numeric_limits<std::int16_t>::min();
+  std::vector<float> real_m_;
+  std::vector<std::int16_t> whole_m_;
+};
 
 HeightPyramid::HeightPyramid(const LatticeBox& box, int level, std::vector<float> height_m)
     : box_(box), finest_(level) {
@@ -199,10 +217,10 @@ HeightPyramid::HeightPyramid(const LatticeBox& box, int level, std::vector<float
   const int across = std::max(box.last_column - box.first_column, box.last_row - box.first_row);
   for (int next = level + 1; (1 << next) < 2 * across; ++next) {
     std::vector<float> coarser = Coarser(box, next, height_m);
-    levels_.push_back(std::make_shared<const HeightSamples>(std::move(height_m)));
+    levels_.push_back(std::make_shared<const Level>(std::move(height_m)));
     height_m = std::move(coarser);
   }
-  levels_.push_back(std::make_shared<const HeightSamples>(std::move(height_m)));
+  levels_.push_back(std::make_shared<const Level>(std::move(height_m)));
 }
 
 std::size_t HeightPyramid::IndexOf(int level, int column, int row) const {

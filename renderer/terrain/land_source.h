@@ -112,26 +112,6 @@ struct LandLattice {
   }
 };
 
-/// Heights [m]; NaN where there is none. Heights that are all whole metres take two bytes per
-/// sample, others four.
-class HeightSamples {
- public:
-  explicit HeightSamples(std::vector<float> height_m);
-  [[nodiscard]] float at(std::size_t index) const {
-    if (whole_m_.empty()) return real_m_[index];
-    return whole_m_[index] == kNone ? std::numeric_limits<float>::quiet_NaN()
-                                    : static_cast<float>(whole_m_[index]);
-  }
-  [[nodiscard]] std::size_t bytes() const {
-    return sizeof(float) * real_m_.size() + sizeof(std::int16_t) * whole_m_.size();
-  }
-
- private:
-  static constexpr std::int16_t kNone = std::numeric_limits<std::int16_t>::min();
-  std::vector<float> real_m_;
-  std::vector<std::int16_t> whole_m_;
-};
-
 /// The samples of a level along one axis of a box: multiples of 2^level, and the last sample of the
 /// box.
 struct LevelAxis {
@@ -152,6 +132,9 @@ struct LevelAxis {
 };
 
 /// Heights of one tile at all its levels of detail. Immutable. The finest levels may be left out.
+/// Files have grids of their own (ElevationGrid); this is one of them, on the lattice that all tiles
+/// share, with the levels that a moving eye needs. Heights that are all whole metres take two bytes
+/// per sample, others four.
 class HeightPyramid {
  public:
   /// @param box       samples of the tile.
@@ -174,12 +157,14 @@ class HeightPyramid {
   [[nodiscard]] static std::size_t BytesOf(const LatticeBox& box, int level);
 
  private:
+  class Level;
+
   [[nodiscard]] std::size_t IndexOf(int level, int column, int row) const;
   [[nodiscard]] float Between(int column, int row) const;
 
   LatticeBox box_;
   int finest_;
-  std::vector<std::shared_ptr<const HeightSamples>> levels_;  // [0] is level finest_
+  std::vector<std::shared_ptr<const Level>> levels_;  // [0] is level finest_
 };
 
 struct LandSource {

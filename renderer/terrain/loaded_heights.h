@@ -44,7 +44,8 @@ using GroundSampler = std::function<std::optional<ElevationGrid>(
 /// only their rims are read, and only from files for which CanBeCut holds.
 [[nodiscard]] ElevationGrid WithPads(const LandTiles& tiles, int tile, const ElevationGrid& grid);
 
-/// Heights [m] of vertices of one level, rows from the north; NaN where there is none.
+/// Heights [m] of vertices of one level, rows from the north; NaN where there is none. Vertices may
+/// lie beyond the lattice, whose rim they repeat.
 struct HeightBlock {
   int first_i = 0, first_j = 0;
   int columns = 0, rows = 0;
@@ -55,6 +56,7 @@ struct HeightBlock {
   }
 };
 
+/// The tiles of a source that are in memory.
 class LoadedHeights {
  public:
   /// @param heights  one per tile; null: not loaded.
