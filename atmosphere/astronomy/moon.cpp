@@ -73,15 +73,6 @@ BodyState MoonOf(const BodyState& earth, const UtcTime& instant, double delta_t_
           earth.velocity_au_per_day + moon.velocity_au_per_day};
 }
 
-/// Returns the position angle on the sky of one direction, seen from another: from north over east.
-double PositionAngle(const glm::dvec3& of, const glm::dvec3& at) {
-  const glm::dvec3 pole(0.0, 0.0, 1.0);
-  const glm::dvec3 east = glm::cross(pole, at);
-  const glm::dvec3 north = glm::cross(at, east);
-  const double angle = std::atan2(glm::dot(of, east), glm::dot(of, north));
-  return angle < 0.0 ? angle + 2.0 * kPi : angle;
-}
-
 constexpr double kStep_s = 1200.0;
 constexpr double kMoonTolerance_s = 0.01;
 constexpr int kSteps = static_cast<int>(30.0 * kSecondsPerDay / kStep_s);
@@ -168,19 +159,10 @@ MoonPosition MoonAt(const Place& place, const UtcTime& instant, double delta_t_s
   const glm::dvec3 from_centre_m =
       ecef_from_gcrs * (moon.position_au - bodies.earth.position_au) * kAstronomicalUnit_m;
   const double distance_m = glm::length(from_centre_m - EcefFromGeodetic(kWgs84, place).xyz);
-  return {seen.elevation_rad,
-          seen.azimuth_rad,
-          distance_m,
-          std::asin(kMoonRadius_m / distance_m),
-          seen.direction,
-          to_sun,
-          glm::length(sun_au),
-          AngleBetween(to_sun.xyz, -seen.direction.xyz),
-          PositionAngle(to_sun.xyz, seen.direction.xyz)};
-}
-
-MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant) {
-  return ApparentMoonAt(place, instant, AlmanacAir());
+  return {seen.elevation_rad,  seen.azimuth_rad,
+          distance_m,          std::asin(kMoonRadius_m / distance_m),
+          seen.direction,      to_sun,
+          glm::length(sun_au), AngleBetween(to_sun.xyz, -seen.direction.xyz)};
 }
 
 MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant, const BendingAir& air) {

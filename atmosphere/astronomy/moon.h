@@ -55,8 +55,6 @@ struct MoonPosition {
   Vector<Ecef> to_sun;     // unit vector from the moon to the sun
   double sun_distance_au;  // distance of the moon from the sun
   double phase_angle_rad;  // at the moon, between sun and place: 0 at full moon, pi at new moon
-  double bright_limb_rad;  // position angle of the middle of the bright limb on the sky, from the
-                           // celestial north pole over east, [0, 2 pi)
   double lower_for_air_rad = 0.0;  // as in SunPosition (sun.h)
 
   /// Returns the illuminated fraction of the disk, by area, [0, 1].
@@ -72,8 +70,7 @@ struct MoonPosition {
 
 /// Returns the moon with refraction as seen from the place's height, like ApparentSunAt (sun.h).
 /// Only its elevation and lower_for_air_rad differ from those of MoonAt.
-[[nodiscard]] MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant);
-/// Returns the moon with refraction by any air that bends rays gently.
+/// @param air  any that bends rays gently, such as AlmanacAir().
 [[nodiscard]] MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant,
                                           const BendingAir& air);
 

@@ -117,11 +117,6 @@ SHARED Number DropletDraineWeight(Number d) {
                 exp(Number(-0.599085) / (d - Number(0.641583)) - Number(0.665888)));
 }
 
-SHARED Number PhaseDroplets(Number cos_scattering, Number d) {
-  return PhaseHenyeyGreensteinDraine(cos_scattering, DropletForwardG(d), DropletDraineG(d),
-                                     DropletDraineWeight(d), DropletDraineAlpha(d));
-}
-
 // Maps the scattering angle to the coordinate of a tabulated phase function, in [0, 1] from forward
 // to backward. The nodes are uniform in this coordinate: dense about the forward direction, and
 // computed without an inverse cosine. The input is the squared sine of half the scattering angle;

@@ -38,9 +38,6 @@ struct Land {
            static_cast<std::size_t>(column);
   }
   [[nodiscard]] float at(int row, int column) const { return height_m[index(row, column)]; }
-  [[nodiscard]] bool IsRim(int row, int column) const {
-    return row == 0 || column == 0 || row == size - 1 || column == size - 1;
-  }
 
   /// Position east and north of the middle [km].
   struct MapPoint {

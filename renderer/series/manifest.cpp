@@ -138,11 +138,11 @@ std::string TerrainText(const Scene& scene, const FileHashes& hashes) {
 }
 
 std::string LightText(const Light& light, const FileHashes& hashes) {
-  std::string text = fmt::format(
-      "{} at {}, {}, {}: {} cd, {} K, radius {} m", NameOf(light.type), light.place.latitude_deg,
-      light.place.longitude_deg, HeightText(light.height),
-      light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
-      light.temperature_k, light.radius_m);
+  std::string text =
+      fmt::format("{} at {}, {}, {}: {} cd, {} K, radius {} m", NameOf(light.type),
+                  light.place.latitude_deg, light.place.longitude_deg, HeightText(light.height),
+                  light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
+                  light.temperature_k, light.radius_m);
   if (light.ies) {
     text += ", " + hashes.names_and_hashes.at(*light.ies);
   } else if (light.type == Light::Type::kPoint) {
@@ -238,8 +238,6 @@ FileHashes HashFilesOf(const Scene& scene, const std::stop_token& stop) {
   }
   return hashes;
 }
-
-Metadata SceneMetadata(const Scene& scene) { return SceneMetadata(scene, HashFilesOf(scene)); }
 
 Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes) {
   const Camera& camera = scene.camera;

@@ -39,9 +39,6 @@ struct FileHashes {
 /// Numbers are written so that they read back exactly, or hashed.
 /// @param hashes  of the files of this scene, taken when the scene was loaded.
 [[nodiscard]] Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes);
-/// Does the same with hashes of the files as they are now. Throws InputError when one cannot be
-/// read.
-[[nodiscard]] Metadata SceneMetadata(const Scene& scene);
 
 /// Returns place, height and angles of a camera, which replace those of SceneMetadata.
 [[nodiscard]] Metadata PoseMetadata(const CameraPose& pose);

@@ -108,7 +108,7 @@ struct LandKind {
   bool has_fine_relief;  // TerrainSource::HasFineRelief
 };
 
-/// Returns the shader texts of GroundRadiance and PlanetRadiance for this material. They follow the
+/// Returns the shader texts of LandSeen, PlanetSeen and SentOn for this material. They follow the
 /// shared texts, air_block, view_block, sun_light and TransmittanceToSun.
 [[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material,
                                                    const LandKind& land);

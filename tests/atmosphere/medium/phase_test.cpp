@@ -211,7 +211,10 @@ TEST(Phase, FogScattersForwardTheMoreTheLargerItsDroplets) {
     EXPECT_NEAR(MeanCosine(fog), 0.86, 0.04)
         << diameter_um << " um: drops of water have mean cosines of 0.82 to 0.89 in visible light";
     for (const double c : {-1.0, -0.3, 0.7, 1.0}) {
-      EXPECT_NEAR(Phase(fog, c) / shared::PhaseDroplets(c, diameter_um), 1.0, 1e-12);
+      const double value = shared::PhaseHenyeyGreensteinDraine(
+          c, shared::DropletForwardG(diameter_um), shared::DropletDraineG(diameter_um),
+          shared::DropletDraineWeight(diameter_um), shared::DropletDraineAlpha(diameter_um));
+      EXPECT_NEAR(Phase(fog, c) / value, 1.0, 1e-12);
     }
   }
   EXPECT_NEAR(DropletPhase(4.9999).g, DropletPhase(5.0).g, 0.003) << "the two fits meet";

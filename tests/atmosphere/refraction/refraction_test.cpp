@@ -419,7 +419,7 @@ TEST(SunForAir, IsRaisedByTheLiftForAirAtAnyHeight) {
           << time << " " << height_m;
       EXPECT_EQ(SunForAir(seen).azimuth_rad, seen.azimuth_rad);
       EXPECT_EQ(SunForAir(truly).elevation_rad, truly.elevation_rad) << "nothing has lifted it";
-      const MoonPosition moon = ApparentMoonAt(eye, now), bare = MoonAt(eye, now);
+      const MoonPosition moon = ApparentMoonAt(eye, now, AlmanacAir()), bare = MoonAt(eye, now);
       EXPECT_NEAR(moon.elevation_rad - moon.lower_for_air_rad,
                   bare.elevation_rad + LiftForAir(AlmanacAir(), bare.elevation_rad), 1e-12);
     }

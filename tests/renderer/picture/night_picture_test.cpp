@@ -247,7 +247,7 @@ Bright BrightOf(const Image& image) {
 
 /// Returns the moon at the place of BareScene.
 MoonPosition MoonOver(const UtcTime& instant) {
-  return ApparentMoonAt(Place{46.5, 8.0, 2.0}, instant);
+  return ApparentMoonAt(Place{46.5, 8.0, 2.0}, instant, AlmanacAir());
 }
 
 TEST(MoonPicture, TheFullMoonHasItsPlaceAndBrightness) {
@@ -357,7 +357,7 @@ TEST(EclipsePicture, TheCrescentFacesAwayFromTheMoon) {
   for (const char* utc : {"2026-08-12T17:50:00Z", "2026-08-12T18:10:00Z", "2026-08-12T18:40:00Z"}) {
     const UtcTime instant = ParseInstant(utc);
     const SunPosition sun = ApparentSunAt(Burgos(), instant);
-    const MoonPosition moon = ApparentMoonAt(Burgos(), instant);
+    const MoonPosition moon = ApparentMoonAt(Burgos(), instant, AlmanacAir());
     const Image image = EclipseRendered(TowardsSun(instant, 0.7), instant, 64, 4);
     double x = 0.0, y = 0.0;
     for (int row = 0; row < 64; ++row) {

@@ -254,6 +254,10 @@ std::vector<std::size_t> NeighboursOf(const Land& land, std::size_t sample) {
   return neighbours;
 }
 
+bool IsRim(const Land& land, int row, int column) {
+  return row == 0 || column == 0 || row == land.size - 1 || column == land.size - 1;
+}
+
 // The priority flood of Barnes, Lehman and Mulla with one ordered set as its queue. Keys have the
 // order that the header defines: heights in the steps of a float at 20 km, then samples.
 struct SlowFlood {
@@ -268,7 +272,7 @@ struct SlowFlood {
     };
     for (std::size_t i = 0; i < land.height_m.size(); ++i) {
       const auto size = static_cast<std::size_t>(land.size);
-      if (land.IsRim(static_cast<int>(i / size), static_cast<int>(i % size))) reach(i);
+      if (IsRim(land, static_cast<int>(i / size), static_cast<int>(i % size))) reach(i);
     }
     while (!queue.empty()) {
       const std::size_t sample = queue.begin()->second;
@@ -305,7 +309,7 @@ TEST(Erosion, WaterFlowsDownTheSteepestWay) {
   for (std::size_t i = 0; i < rank.size(); ++i) rank[drainage.order[i]] = i;
   for (std::size_t sample = 0; sample < rank.size(); ++sample) {
     const int row = static_cast<int>(sample) / kSize, column = static_cast<int>(sample) % kSize;
-    if (land.IsRim(row, column)) {
+    if (IsRim(land, row, column)) {
       EXPECT_EQ(drainage.receiver[sample], sample);
       continue;
     }

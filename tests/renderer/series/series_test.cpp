@@ -514,14 +514,17 @@ TEST(ContactSheet, TinyThumbnailsHaveTheirPlace) {
   }
 }
 
+/// Returns the record of a scene with the contents of its files as they are now.
+Metadata RecordOf(const Scene& scene) { return SceneMetadata(scene, HashFilesOf(scene)); }
+
 // Hard case 48.
 TEST_F(Provenance, FingerprintsFollowSettingsAndTerrain) {
   WriteText(folder_ / "dem.tif", "one");
   Scene scene;
   scene.medium = MediumPreset("earth");
   scene.terrain = {TerrainSource::Kind::kElevationModel, folder_ / "dem.tif", VoidPolicy::kFill};
-  const std::string first = Fingerprint(SceneMetadata(scene));
-  EXPECT_EQ(Fingerprint(SceneMetadata(scene)), first);
+  const std::string first = Fingerprint(RecordOf(scene));
+  EXPECT_EQ(Fingerprint(RecordOf(scene)), first);
   for (const auto& change : std::vector<std::function<void(Scene&)>>{
            [](Scene& other) { other.camera.heading_rad += 1e-12; },
            [](Scene& other) { other.medium.mie_scattering_per_m[0] *= 1.0000001; },
@@ -529,12 +532,12 @@ TEST_F(Provenance, FingerprintsFollowSettingsAndTerrain) {
            [](Scene& other) { other.lights.emplace_back(); }}) {
     Scene other = scene;
     change(other);
-    EXPECT_NE(Fingerprint(SceneMetadata(other)), first);
+    EXPECT_NE(Fingerprint(RecordOf(other)), first);
   }
   WriteText(folder_ / "dem.tif", "two");
-  EXPECT_NE(Fingerprint(SceneMetadata(scene)), first);
+  EXPECT_NE(Fingerprint(RecordOf(scene)), first);
   fs::remove(folder_ / "dem.tif");
-  EXPECT_THROW((void)SceneMetadata(scene), InputError);
+  EXPECT_THROW((void)RecordOf(scene), InputError);
 }
 
 /// A key of scene.toml with two values; an empty value leaves the key out.
@@ -670,7 +673,7 @@ TEST_F(SeriesRun, ResumeRendersAgainAfterAnyChangeOfTheScene) {
     const std::string text = std::string(key.section) + value + "\n";
     const bool has_place = text.find("[place]") != std::string::npos;
     const std::string place = has_place ? "" : "[place]\nlatitude = 46.5\nlongitude = 8\n";
-    return SceneMetadata(SceneFromToml(place + text, "scene.toml", folder_));
+    return RecordOf(SceneFromToml(place + text, "scene.toml", folder_));
   };
   SeriesSource source = Source();
   SeriesOutput output = Output();
@@ -700,7 +703,7 @@ void ExpectRecorded(const TomlFields<Object>& fields, const Scene& scene, const 
     if (field.key == "zone") continue;  // local times in a list of frames, not pixels
     Scene other = scene;
     part(other) = tests::WithAnotherValue(field, part(other));
-    EXPECT_NE(Fingerprint(SceneMetadata(other)), Fingerprint(SceneMetadata(scene)))
+    EXPECT_NE(Fingerprint(RecordOf(other)), Fingerprint(RecordOf(scene)))
         << fields.name << "." << field.key;
   }
 }
@@ -732,11 +735,10 @@ TEST_F(Provenance, FingerprintsFollowTheContentOfEveryFile) {
                                 "{}grid = 'raw'\ngrid_size = [2, 2, 2]\n{}grid = 'smoke.nhdr'\n",
                                 kPoint, kVolume, kVolume),
                     "scene.toml", folder_);
-  std::string before = Fingerprint(SceneMetadata(scene));
+  std::string before = Fingerprint(RecordOf(scene));
   for (const NamedFile& file : FilesOf(scene)) {
     WriteText(file.file, ContentOf(file.file) + "\n");
-    EXPECT_NE(std::exchange(before, Fingerprint(SceneMetadata(scene))),
-              Fingerprint(SceneMetadata(scene)))
+    EXPECT_NE(std::exchange(before, Fingerprint(RecordOf(scene))), Fingerprint(RecordOf(scene)))
         << file.file;
   }
 }

@@ -233,9 +233,10 @@ std::vector<double> LandDifferences(const LitGround& lit) {
         glm::dot(normal, lit.site().geometry().UpAt(c.hit.point)), glm::dot(normal, sunward));
     return std::array<float, 3>{c.light.sun_x, c.light.sky[0] / of[0], c.light.sky[2] / of[2]};
   };
+  const std::string seen = "LandSeen(" + kPoint + ", " + kNormal + ", " + kToEye + ")";
   return Differences(lit, lit.lighting(), kEye_m, LandPoints(lit),
-                     {"GroundRadiance(" + kPoint + ", " + kNormal +
-                          ", a[5], vec4(a[6], 0.0, a[7], 0.0), " + kToEye + ")",
+                     {"SentOn(" + seen + ", a[5], SkyByShare(" + seen +
+                          ", vec4(a[6], 0.0, a[7], 0.0)), " + kToEye + ")",
                       [&](const SeenPoint& c) { return PlaceOf(c, kEye_m, shares(c)); }});
 }
 
@@ -255,8 +256,9 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   const SolvedAir& air = lit.site().air();
   light.on_terrain = std::make_shared<const TerrainIrradiance>(
       nullptr, air.single_scattering(), air.multiple_scattering(), light.source.direction.seen);
+  const std::string seen = "PlanetSeen(" + kPoint + ", " + kToEye + ")";
   return Differences(lit, light, eye_m, PlanetPoints(lit, eye_m),
-                     {"PlanetRadiance(" + kPoint + ", " + kToEye + ")",
+                     {"SentOn(" + seen + ", kNoEdge, SkyOnPlanet(" + seen + "), " + kToEye + ")",
                       [eye_m](const SeenPoint& c) { return PlaceOf(c, eye_m, {}); }});
 }
 

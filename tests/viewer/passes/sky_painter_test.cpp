@@ -596,7 +596,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
 TEST_F(SkyPainterTest, TheMoonOfTheEarthIsNotInTheSkyOfMars) {
   const UtcTime now = ParseInstant("2026-06-29T22:00:00Z");
   Scene scene = BareScene(300.0, 0.0, 0.0, 20.0);
-  const MoonPosition moon = ApparentMoonAt(scene.place, now);
+  const MoonPosition moon = ApparentMoonAt(scene.place, now, AlmanacAir());
   ASSERT_GT(moon.elevation_rad, 0.1);
   scene.camera.heading_rad = moon.azimuth_rad;
   scene.camera.pitch_rad = moon.elevation_rad;

@@ -349,8 +349,10 @@ std::vector<ShaderPiece> TextsOfCover(const GroundCover& cover, const char* ligh
                    {!cover.sea_level_m, cover.kind != GroundCover::Kind::kOrenNayar}))
     texts.push_back(std::move(piece));
   texts.push_back({"main",
-                   "out vec4 sent;\nvoid main() {\n  vec3 p = gl_FragCoord.xyz;\n  sent = "
-                   "GroundRadiance(p, p, 1.0, vec4(1.0), p) + PlanetRadiance(p, p);\n}\n"});
+                   "out vec4 sent;\nvoid main() {\n  vec3 p = gl_FragCoord.xyz;\n"
+                   "  SeenGround land = LandSeen(p, p, p), planet = PlanetSeen(p, p);\n"
+                   "  sent = SentOn(land, 1.0, SkyByShare(land, vec4(1.0)), p) +\n"
+                   "         SentOn(planet, kNoEdge, SkyOnPlanet(planet), p);\n}\n"});
   return texts;
 }
 

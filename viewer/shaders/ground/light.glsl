@@ -160,16 +160,6 @@ const float kNoEdge = 1e9;  // value of sun_x if no terrain hides the sun
 
 vec4 SkyOnPlanet(SeenGround seen) { return LevelSky(dot(seen.at.up, sun_for_air.xyz)); }
 
-vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_share, vec3 to_eye) {
-  SeenGround seen = LandSeen(point_m, mesh_normal, to_eye);
-  return SentOn(seen, sun_x, SkyByShare(seen, sky_share), to_eye);
-}
-
-vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
-  SeenGround seen = PlanetSeen(point_m, to_eye);
-  return SentOn(seen, kNoEdge, SkyOnPlanet(seen), to_eye);
-}
-
 // Returns the irradiance by the sun of the level planet, by straight rays.
 vec4 StraightSunOn(GroundPlace at) {
   if (HasSet()) return vec4(0.0);
