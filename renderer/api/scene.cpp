@@ -70,8 +70,7 @@ SceneDescription BuiltInScene() {
   const atmosphere::CameraPose view = renderer::ProceduralMountainsViewAboveGround(
       {renderer::kHomeLatitude, renderer::kHomeLongitude, 0.0});
   SceneDescription scene;
-  scene.place = {view.place.latitude_deg,
-                 view.place.longitude_deg};
+  scene.place = {view.place.latitude_deg, view.place.longitude_deg};
   scene.camera = {.height_m = view.place.height_m,
                   .heading_deg = view.heading_rad / kRadiansPerDegree,
                   .pitch_deg = view.pitch_rad / kRadiansPerDegree,

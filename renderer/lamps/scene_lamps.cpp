@@ -118,8 +118,7 @@ void PutColours(const BandColour& colour, LampsBlock& block) {
 
 }  // namespace
 
-LampView LampViewFrom(const LocalFrame& ground, const Place& eye,
-                      double pixel_angle_rad) {
+LampView LampViewFrom(const LocalFrame& ground, const Place& eye, double pixel_angle_rad) {
   return {{ground, LocalFrame(ground.ellipsoid(), eye)}, eye.height_m, pixel_angle_rad};
 }
 

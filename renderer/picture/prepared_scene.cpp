@@ -145,8 +145,7 @@ Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sampl
   const FrameTransform from_eye = pose ? FromEyeAt(ground, pose->place) : FromSceneEye(ground);
   if (camera_sample.bodies) return {from_eye, *camera_sample.bodies};
   const Place eye =
-      pose ? pose->place
-           : Place{place.latitude_deg, place.longitude_deg, ground.eye_height_m};
+      pose ? pose->place : Place{place.latitude_deg, place.longitude_deg, ground.eye_height_m};
   return {from_eye, SkyBodiesAt(eye, camera_sample.instant)};
 }
 

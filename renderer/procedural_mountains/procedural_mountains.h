@@ -33,8 +33,7 @@ inline constexpr std::uint64_t kProceduralMountainsFingerprint = 157840461224485
 
 /// Returns the view that the range was designed for: from a shoulder of the foothills to the
 /// highest peak, chain behind chain, east at the left.
-[[nodiscard]] CameraPose ProceduralMountainsView(const Place& centre,
-                                                 const ElevationGrid& range);
+[[nodiscard]] CameraPose ProceduralMountainsView(const Place& centre, const ElevationGrid& range);
 
 /// Height of the ground [m] at the position of the view, known before a range is made. It is equal
 /// for all seeds to a centimetre; beside a pole, where the heights are resampled, to some metres.
