@@ -108,7 +108,7 @@ constexpr double kFocal_m = 0.085, kFNumber = 1.4, kFocus_m = 12.0;
 CameraRays LensCamera(int blades = 0) {
   Camera camera = CameraFromDegrees({}, 33.0, -20.0, 10.0, 24.0);
   camera.lens = ThinLens{kFNumber, kFocal_m, kFocus_m, blades, 0.2};
-  return {camera, 300, 200, {{5.0, -7.0, 100.0}}};
+  return {camera, 300, 200, FrameTransform(glm::dvec3(5.0, -7.0, 100.0))};
 }
 
 TEST(CameraRays, RaysOfALensMeetInThePlaneOfFocus) {

@@ -158,14 +158,14 @@ TEST(LampLight, PicturesKeepTheIntensityAlsoThroughALens) {
   Scene scene = NightScene();
   scene.lights = {LightAt(500.0, 3.0, kLampEye_m, 1000.0)};
   const LampSite site(scene);
-  const CameraRays pinhole(scene.camera, 320, 180, {kLampEye});
+  const CameraRays pinhole(scene.camera, 320, 180, FrameTransform(kLampEye));
   EXPECT_NEAR(IlluminanceInPicture(site, site.light, pinhole, 2) / (1000.0 / (500.0 * 500.0)), 1.0,
               0.06)
       << "four rays a pixel sum a soft disk of 1.8 pixels; the air takes 1.5 %";
   const double sharp = IlluminanceInPicture(site, site.light, pinhole, 8);
   for (const int blades : {0, 6}) {
     scene.camera.lens = ThinLens{1.4, 0.085, 3.0, blades, 0.0};
-    const CameraRays camera(scene.camera, 320, 180, {kLampEye});
+    const CameraRays camera(scene.camera, 320, 180, FrameTransform(kLampEye));
     const LampLight light = site.light.SeenBy(camera);
     EXPECT_NEAR(IlluminanceInPicture(site, light, camera, 8) / sharp, 1.0, 0.01)
         << "sums over points, " << blades << " blades";

@@ -79,8 +79,7 @@ struct PlannedPicture {
 /// Compares light on terrain.
 PlannedLight OnSurfaces(const Scene& scene, const PlannedPicture& picture = {}) {
   const LampSite site(scene);
-  const CameraRays camera(scene.camera, picture.width, picture.height,
-                          {.eye = {0.0, 0.0, site.ground.eye_height_m}});
+  const CameraRays camera(scene.camera, picture.width, picture.height, FromSceneEye(site.ground));
   const auto hit = [&](const CameraRay& ray) {
     return site.ground.terrain->Intersect(ray.origin, ray.direction);
   };
@@ -109,8 +108,7 @@ PlannedLight OnSurfaces(const Scene& scene, const PlannedPicture& picture = {}) 
 PlannedLight InTheAir(const Scene& scene, const PlannedPicture& picture = {},
                       RayTrace trace = nullptr) {
   const LampSite site(scene);
-  const CameraRays camera(scene.camera, picture.width, picture.height,
-                          {.eye = {0.0, 0.0, site.ground.eye_height_m}});
+  const CameraRays camera(scene.camera, picture.width, picture.height, FromSceneEye(site.ground));
   if (!trace) {
     trace = [&](const CameraRay& ray) {
       const auto end = site.ground.terrain->Intersect(ray.origin, ray.direction);

@@ -222,7 +222,7 @@ TEST(ProceduralMountainsView, ShowsTheHighestPeakEvenNearThePoles) {
     EXPECT_GT(sight.farthest_m, 40e3);
     EXPECT_GE(sight.ridges, 4) << "chain behind chain";
   }
-  const CameraPose view = ProceduralMountainsView(Degrees(46.5, 8.0), TheRange());
+  const CameraPose view = ProceduralMountainsView({46.5, 8.0}, TheRange());
   EXPECT_NEAR(view.place.height_m, 2000.0, 200.0);
   EXPECT_GT(view.heading_rad / kRadiansPerDegree, 135.0)
       << "south-east to south: dawn comes from the left";
