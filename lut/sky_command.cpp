@@ -42,21 +42,12 @@ struct SkyJob {
   Metadata metadata;
 };
 
-std::string Degrees(double radians) { return fmt::format("{:.6f}", radians / kRadiansPerDegree); }
-
-PanoramaSun SunFromAngles(const SkyOptions& options) {
-  PanoramaSun sun;
-  sun.elevation_rad = *options.sun_elevation * kRadiansPerDegree;
-  sun.azimuth_rad = options.sun_azimuth * kRadiansPerDegree;
+SunInSky SunFromAngles(const SkyOptions& options) {
+  SunInSky sun;
+  sun.elevation_deg = *options.sun_elevation;
+  sun.azimuth_deg = options.sun_azimuth;
+  sun.angular_radius_deg = kSunAngularRadius_rad / kRadiansPerDegree;
   return sun;
-}
-
-// Returns the sun at its apparent (refracted) position. The air is lit by a lower sun
-// (lower_for_air_rad), as in the images of skyseries.
-PanoramaSun SunFromTime(const Place& eye, const UtcTime& instant, const Medium& medium) {
-  const SunPosition sun = ApparentSunAt(eye, instant, GentleAirOf(medium));
-  return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au, sun.angular_radius_rad,
-          sun.lower_for_air_rad};
 }
 
 SkyJob JobFrom(const SkyOptions& options) {
@@ -81,7 +72,9 @@ SkyJob JobFrom(const SkyOptions& options) {
     const Place eye = CheckedPlace({*options.latitude, *options.longitude, options.altitude});
     const UtcTime instant = ParseInstant(*options.time, options.zone);
     job.medium = OnOsculatingSphere(job.medium, eye.latitude_rad());
-    job.settings.sun = SunFromTime(eye, instant, job.medium);
+    // The sun is at its apparent (refracted) position. The air is lit by a lower sun
+    // (lower_for_air_deg), as in the images of skyseries.
+    job.settings.sun = ApparentSunAt(eye, instant, GentleAirOf(job.medium));
     job.metadata["alpenglow.latitude_deg"] = fmt::format("{:.6f}", eye.latitude_deg);
     job.metadata["alpenglow.longitude_deg"] = fmt::format("{:.6f}", eye.longitude_deg);
     job.metadata["alpenglow.utc"] = FormatUtc(instant, 3);
@@ -91,16 +84,16 @@ SkyJob JobFrom(const SkyOptions& options) {
 
 void Describe(SkyJob& job) {
   const PanoramaSettings& settings = job.settings;
-  const PanoramaSun& sun = settings.sun;
+  const SunInSky& sun = settings.sun;
   Metadata& metadata = job.metadata;
   metadata["Software"] = ProducerText();
   metadata["alpenglow.unit"] = "cd/m^2, linear sRGB (Rec. 709 primaries, D65)";
   metadata["alpenglow.atmosphere"] = job.medium.name;
   metadata["alpenglow.atmosphere_hash"] = fmt::format("{:016x}", MediumHash(job.medium));
   metadata["alpenglow.altitude_m"] = fmt::format("{}", settings.altitude_m);
-  metadata["alpenglow.sun_elevation_deg"] = Degrees(sun.elevation_rad);
-  metadata["alpenglow.sun_azimuth_deg"] = DirectionText(sun.azimuth_rad / kRadiansPerDegree, 6);
-  metadata["alpenglow.sun_distance"] = fmt::format("{:.6f}", sun.distance);
+  metadata["alpenglow.sun_elevation_deg"] = fmt::format("{:.6f}", sun.elevation_deg);
+  metadata["alpenglow.sun_azimuth_deg"] = DirectionText(sun.azimuth_deg, 6);
+  metadata["alpenglow.sun_distance"] = fmt::format("{:.6f}", sun.distance_au);
   metadata["alpenglow.sun_disk"] = settings.sun_disk ? "drawn" : "left out";
   if (settings.compass) metadata["alpenglow.compass"] = "painted";
   std::vector<std::string> layers;

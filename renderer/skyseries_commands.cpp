@@ -94,9 +94,8 @@ void WritePlot(const TimesOptions& options, const Scene& scene, const EventDay& 
     ThrowIfInterrupted();
     const UtcTime instant = AddSeconds(*first.around, at_s);
     const double lux = renderer.Illuminance(instant);
-    moments.push_back({instant, SunAt(first.place, instant).elevation_rad / kRadiansPerDegree,
-                       MoonAt(first.place, instant).elevation_rad / kRadiansPerDegree, lux,
-                       IncidentEv100(lux)});
+    moments.push_back({instant, TrueSunAt(first.place, instant).elevation_deg,
+                       TrueMoonAt(first.place, instant).elevation_deg, lux, IncidentEv100(lux)});
   }
   WriteTextAtomically(*options.plot, SvgOfDay(moments, first.zone, PublishedLightLevels()));
 }

@@ -360,11 +360,11 @@ HudTime TimeOf(FlightSession& flight) {
 }
 
 HudSky SkyOf(const FrameSky& sky) {
-  HudSky shown{sky.sun.azimuth_rad, sky.sun.elevation_rad};
+  HudSky shown{sky.sun.azimuth_rad(), sky.sun.elevation_rad()};
   if (!sky.moon) return shown;
-  shown.moon = HudMoon{sky.bodies.moon.azimuth_rad,
+  shown.moon = HudMoon{sky.bodies.moon.azimuth_rad(),
                        std::asin(std::clamp(sky.moon->direction.seen.z, -1.0, 1.0)),
-                       sky.bodies.moon.IlluminatedFraction()};
+                       sky.bodies.moon.illuminated_fraction};
   return shown;
 }
 

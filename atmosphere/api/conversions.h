@@ -16,10 +16,6 @@ const UtcTime& RequireValid(const UtcTime& time);
 /// Throws InputError that names the member out of range.
 void RequireValid(const SunInSky& sun);
 
-/// Returns the elevation of the sun that lights the air [degrees]: that of the visible sun less
-/// lower_for_air_deg, but never beyond the nadir or the zenith.
-[[nodiscard]] double ElevationForAir_deg(const SunInSky& sun);
-
 /// Throws InputError that names the value unless it is finite.
 void RequireFinite(double value, std::string_view name);
 

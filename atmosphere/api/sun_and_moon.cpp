@@ -26,9 +26,9 @@ using atmosphere::RequireInRange;
 namespace {
 
 Direction Towards(double elevation_deg, double azimuth_deg) {
-  const glm::dvec3 unit = atmosphere::DirectionFromAngles(elevation_deg * kRadiansPerDegree,
-                                                          azimuth_deg * kRadiansPerDegree)
-                              .xyz;
+  const glm::dvec3 unit =
+      atmosphere::EnuFromAngles(elevation_deg * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree)
+          .xyz;
   return {unit.x, unit.y, unit.z};
 }
 
@@ -65,32 +65,19 @@ Direction SunInSky::ToSun() const {
   return Towards(elevation_deg, azimuth_deg);
 }
 
-double ElevationForAir_deg(const SunInSky& sun) {
-  return std::clamp(sun.elevation_deg - sun.lower_for_air_deg, -90.0, 90.0);
-}
-
 Direction SunInSky::ToSunForAir() const {
   RequireValid(*this);
-  return Towards(ElevationForAir_deg(*this), azimuth_deg);
+  return Towards(atmosphere::SunForAir(*this).elevation_deg, azimuth_deg);
 }
 
 SunInSky SunAt(const Place& place, const UtcTime& time, const Atmosphere& atmosphere) {
-  const atmosphere::SunPosition sun = atmosphere::ApparentSunAt(
-      atmosphere::CheckedPlace(place), RequireValid(time), AirAt(atmosphere, place));
-  return {sun.elevation_rad / kRadiansPerDegree, sun.azimuth_rad / kRadiansPerDegree,
-          sun.distance_au, sun.angular_radius_rad / kRadiansPerDegree,
-          sun.lower_for_air_rad / kRadiansPerDegree};
+  return atmosphere::ApparentSunAt(atmosphere::CheckedPlace(place), RequireValid(time),
+                                   AirAt(atmosphere, place));
 }
 
 MoonInSky MoonAt(const Place& place, const UtcTime& time, const Atmosphere& atmosphere) {
-  const atmosphere::MoonPosition moon = atmosphere::ApparentMoonAt(
-      atmosphere::CheckedPlace(place), RequireValid(time), AirAt(atmosphere, place));
-  return {moon.elevation_rad / kRadiansPerDegree,
-          moon.azimuth_rad / kRadiansPerDegree,
-          moon.distance_m,
-          moon.angular_radius_rad / kRadiansPerDegree,
-          moon.phase_angle_rad / kRadiansPerDegree,
-          moon.IlluminatedFraction()};
+  return atmosphere::ApparentMoonAt(atmosphere::CheckedPlace(place), RequireValid(time),
+                                    AirAt(atmosphere, place));
 }
 
 std::optional<UtcTime> SunEventTime(std::string_view event, const Place& place,

@@ -8,7 +8,7 @@
 //   for_air  from where straight rays light the air like the refracted rays: for columns of air
 //            between the light and the air, the planet's shadow in the air, and multiple scattering
 //
-// SunPosition (sun.h) and MoonPosition (moon.h) are what an ephemeris finds, as angles, with
+// SunInSky (sun.h) and MoonPosition (moon.h) are what an ephemeris finds, as angles with
 // distances; DirectionOf turns them into vectors, which light everything.
 #pragma once
 

@@ -87,8 +87,8 @@ class LimbOverHorizon {
                          .true_elevation_rad) {}
 
   double operator()(double after_s) const {
-    const MoonPosition moon = MoonAt(place_, AddSeconds(from_, after_s));
-    return moon.elevation_rad + moon.angular_radius_rad - horizon_rad_;
+    const MoonPosition moon = TrueMoonAt(place_, AddSeconds(from_, after_s));
+    return moon.elevation_rad() + moon.angular_radius_rad() - horizon_rad_;
   }
 
  private:
@@ -141,13 +141,11 @@ std::optional<UtcTime> NextChange(const Place& place, const UtcTime& after, bool
 
 }  // namespace
 
-double MoonPosition::IlluminatedFraction() const { return 0.5 * (1.0 + std::cos(phase_angle_rad)); }
-
-MoonPosition MoonAt(const Place& place, const UtcTime& instant) {
-  return MoonAt(place, instant, DeltaT(instant));
+MoonPosition TrueMoonAt(const Place& place, const UtcTime& instant) {
+  return TrueMoonAt(place, instant, DeltaT(instant));
 }
 
-MoonPosition MoonAt(const Place& place, const UtcTime& instant, double delta_t_s) {
+MoonPosition TrueMoonAt(const Place& place, const UtcTime& instant, double delta_t_s) {
   const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
   const BodyState moon = MoonOf(bodies.earth, instant, delta_t_s);
   const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, delta_t_s);
@@ -159,20 +157,26 @@ MoonPosition MoonAt(const Place& place, const UtcTime& instant, double delta_t_s
   const glm::dvec3 from_centre_m =
       ecef_from_gcrs * (moon.position_au - bodies.earth.position_au) * kAstronomicalUnit_m;
   const double distance_m = glm::length(from_centre_m - EcefFromGeodetic(kWgs84, place).xyz);
-  return {seen.elevation_rad,  seen.azimuth_rad,
-          distance_m,          std::asin(kMoonRadius_m / distance_m),
-          seen.direction,      to_sun,
-          glm::length(sun_au), AngleBetween(to_sun.xyz, -seen.direction.xyz)};
+  const double phase_angle_rad = AngleBetween(to_sun.xyz, -seen.direction.xyz);
+  MoonPosition position{{}, to_sun};
+  position.elevation_deg = seen.elevation_rad / kRadiansPerDegree;
+  position.azimuth_deg = seen.azimuth_rad / kRadiansPerDegree;
+  position.distance_m = distance_m;
+  position.angular_radius_deg = std::asin(kMoonRadius_m / distance_m) / kRadiansPerDegree;
+  position.phase_angle_deg = phase_angle_rad / kRadiansPerDegree;
+  position.illuminated_fraction = 0.5 * (1.0 + std::cos(phase_angle_rad));
+  position.sun_distance_au = glm::length(sun_au);
+  return position;
 }
 
 MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant, const BendingAir& air) {
-  return Refracted(MoonAt(place, instant), place.height_m, air);
+  return Refracted(TrueMoonAt(place, instant), place.height_m, air);
 }
 
 LightDirection DirectionOf(const MoonPosition& apparent) {
-  const double for_air_rad = apparent.elevation_rad - apparent.lower_for_air_rad;
-  return {DirectionFromAngles(apparent.elevation_rad, apparent.azimuth_rad).xyz,
-          DirectionFromAngles(for_air_rad, apparent.azimuth_rad).xyz};
+  const double for_air_deg = apparent.elevation_deg - apparent.lower_for_air_deg;
+  return {EnuFromAngles(apparent.elevation_rad(), apparent.azimuth_rad()).xyz,
+          EnuFromAngles(for_air_deg * kRadiansPerDegree, apparent.azimuth_rad()).xyz};
 }
 
 std::optional<UtcTime> NextMoonrise(const Place& place, const UtcTime& after) {
@@ -185,7 +189,7 @@ std::optional<UtcTime> NextMoonset(const Place& place, const UtcTime& after) {
 
 UtcTime NextMoonTransit(const Place& place, const UtcTime& after) {
   const auto hour_angle = [&](double after_s) {
-    const glm::dvec3 moon = MoonAt(place, AddSeconds(after, after_s)).direction.xyz;
+    const glm::dvec3 moon = EcefTowards(TrueMoonAt(place, AddSeconds(after, after_s)), place).xyz;
     return std::remainder(place.longitude_rad() - std::atan2(moon.y, moon.x), 2.0 * kPi);
   };
   // The hour angle increases, except for the jump from half a turn to minus half a turn at the
@@ -235,7 +239,7 @@ double SpherePhase(double angle_rad) {
 // Returns the irradiance of earthlight at the moon, relative to that of sunlight there.
 double EarthIrradiance(const MoonPosition& moon) {
   constexpr double kGeometricAlbedo = 0.37;
-  const double angle = kPi - moon.phase_angle_rad;
+  const double angle = kPi - moon.phase_angle_rad();
   const double share = kEarthMeanRadius_m / moon.distance_m;
   return kGeometricAlbedo * share * share * (std::sin(angle) + (kPi - angle) * std::cos(angle)) /
          kPi;
@@ -252,19 +256,19 @@ double SunlightAt(const MoonPosition& moon, double earth_sun_au) {
 MoonDisk MoonDiskOf(const MoonPosition& moon, const LightDirection& direction,
                     const glm::dvec3& to_sun, double earth_sun_au) {
   constexpr double kLastMeasured_rad = 150.0 * kRadiansPerDegree;
-  const double angle_rad = std::min(moon.phase_angle_rad, kLastMeasured_rad);
+  const double angle_rad = std::min(moon.phase_angle_rad(), kLastMeasured_rad);
   const double sunlight = SunlightAt(moon, earth_sun_au);
   const double seen = MoonReflectance(angle_rad, kWavelength_nm) / kPi;
   const double earthlit = MoonReflectance(0.0, kWavelength_nm) / kPi;
-  return {direction, to_sun, moon.angular_radius_rad,
+  return {direction, to_sun, moon.angular_radius_rad(),
           2.0 * sunlight * seen / SpherePhase(angle_rad),
           sunlight * EarthIrradiance(moon) * earthlit};
 }
 
 double MoonIrradiance(const MoonPosition& moon, double earth_sun_au, double wavelength_nm) {
-  const double sine = std::sin(moon.angular_radius_rad);
+  const double sine = std::sin(moon.angular_radius_rad());
   return sine * sine * SunlightAt(moon, earth_sun_au) *
-         MoonReflectance(moon.phase_angle_rad, wavelength_nm);
+         MoonReflectance(moon.phase_angle_rad(), wavelength_nm);
 }
 
 double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction) {

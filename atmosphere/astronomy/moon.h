@@ -24,6 +24,8 @@
 // The moon reflects this light with the reflectance of full moon: earthshine. Maria are neglected.
 #pragma once
 
+#include <alpenglow/sun_and_moon.h>
+
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string_view>
@@ -44,32 +46,20 @@ namespace alpenglow::atmosphere {
 /// Mean radius of the moon, IAU working group on cartographic coordinates (Archinal et al. 2018).
 inline constexpr double kMoonRadius_m = 1737400.0;
 
-/// The moon seen from a place, without refraction (topocentric, apparent).
-struct MoonPosition {
-  double elevation_rad;       // above the horizontal plane of the ellipsoid
-  double azimuth_rad;         // [0, 2 pi), from north over east
-  double distance_m;          // distance of its centre from the place
-  double angular_radius_rad;  // of the disk
-  Vector<Ecef> direction;     // unit vector from the place to the moon
-
-  Vector<Ecef> to_sun;     // unit vector from the moon to the sun
-  double sun_distance_au;  // distance of the moon from the sun
-  double phase_angle_rad;  // at the moon, between sun and place: 0 at full moon, pi at new moon
-  double lower_for_air_rad = 0.0;  // as in SunPosition (sun.h)
-
-  /// Returns the illuminated fraction of the disk, by area, [0, 1].
-  [[nodiscard]] double IlluminatedFraction() const;
+/// The moon seen from a place, and where it is lit from.
+struct MoonPosition : MoonInSky {
+  Vector<Ecef> to_sun;  // unit vector from the moon to the sun
 };
 
-/// Returns the position of the moon. ELP/MPP02 (ephemeris.h; within an arcsecond and 3 km 1950-2100
-/// where delta-T is known; one second of delta-T is half an arcsecond), IAU 2006/2000A
-/// precession-nutation, light time, aberration and parallax.
-[[nodiscard]] MoonPosition MoonAt(const Place& place, const UtcTime& instant);
-/// Returns the position of the moon for a given TT - UT1 [s].
-[[nodiscard]] MoonPosition MoonAt(const Place& place, const UtcTime& instant, double delta_t_s);
+/// Returns the moon without refraction, topocentric and apparent. ELP/MPP02 (ephemeris.h; within an
+/// arcsecond and 3 km 1950-2100 where delta-T is known; one second of delta-T is half an arcsecond),
+/// IAU 2006/2000A precession-nutation, light time, aberration and parallax.
+[[nodiscard]] MoonPosition TrueMoonAt(const Place& place, const UtcTime& instant);
+/// Returns this moon for a given TT - UT1 [s].
+[[nodiscard]] MoonPosition TrueMoonAt(const Place& place, const UtcTime& instant, double delta_t_s);
 
 /// Returns the moon with refraction as seen from the place's height, like ApparentSunAt (sun.h).
-/// Only its elevation and lower_for_air_rad differ from those of MoonAt.
+/// Only its elevation and lower_for_air_deg differ from those of TrueMoonAt.
 /// @param air  any that bends rays gently, such as AlmanacAir().
 [[nodiscard]] MoonPosition ApparentMoonAt(const Place& place, const UtcTime& instant,
                                           const BendingAir& air);

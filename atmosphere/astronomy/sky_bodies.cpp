@@ -49,6 +49,12 @@ double LightBetween(double low, double high, double wavelength_nm) {
   return LightBetween(low, high, wavelength_nm, [](double) { return 1.0; });
 }
 
+/// Returns the distance of the centres on the unit sphere.
+double ChordBetween(const SunInSky& sun, const MoonPosition& moon) {
+  return glm::length(EnuFromAngles(sun.elevation_rad(), sun.azimuth_rad()).xyz -
+                     EnuFromAngles(moon.elevation_rad(), moon.azimuth_rad()).xyz);
+}
+
 /// Sun and moon at a place, some seconds after an instant.
 class Pair {
  public:
@@ -56,15 +62,15 @@ class Pair {
 
   /// Returns the squared distance of the centres on the unit sphere.
   [[nodiscard]] double Chord2(double after_s) const {
-    const glm::dvec3 apart = SunIn(after_s).direction.xyz - MoonIn(after_s).direction.xyz;
-    return glm::dot(apart, apart);
+    const double chord = ChordBetween(SunIn(after_s), MoonIn(after_s));
+    return chord * chord;
   }
 
   /// Returns the distance of the centres minus their distance at a kind of contact [rad].
   [[nodiscard]] double OverContact(double after_s, bool is_outer) const {
-    const SunPosition sun = SunIn(after_s);
+    const SunInSky sun = SunIn(after_s);
     const MoonPosition moon = MoonIn(after_s);
-    const double apart = glm::length(sun.direction.xyz - moon.direction.xyz);
+    const double apart = ChordBetween(sun, moon);
     const double sun_rad = kAuwers_rad / sun.distance_au;
     const double moon_rad = std::asin((is_outer ? kMountains_m : kValleys_m) / moon.distance_m);
     const double contact = is_outer ? sun_rad + moon_rad : std::abs(sun_rad - moon_rad);
@@ -76,11 +82,11 @@ class Pair {
   }
 
  private:
-  [[nodiscard]] SunPosition SunIn(double after_s) const {
-    return SunAt(place_, AddSeconds(from_, after_s));
+  [[nodiscard]] SunInSky SunIn(double after_s) const {
+    return TrueSunAt(place_, AddSeconds(from_, after_s));
   }
   [[nodiscard]] MoonPosition MoonIn(double after_s) const {
-    return MoonAt(place_, AddSeconds(from_, after_s));
+    return TrueMoonAt(place_, AddSeconds(from_, after_s));
   }
 
   Place place_;
@@ -120,10 +126,10 @@ double EclipsedDisk::CoveredArea() const {
          kPi;
 }
 
-EclipsedDisk EclipsedDiskOf(const SunPosition& sun, const MoonPosition& moon) {
-  const double chord = glm::length(sun.direction.xyz - moon.direction.xyz);
-  return {moon.angular_radius_rad / sun.angular_radius_rad,
-          2.0 * std::asin(std::min(0.5 * chord, 1.0)) / sun.angular_radius_rad};
+EclipsedDisk EclipsedDiskOf(const SunInSky& sun, const MoonPosition& moon) {
+  const double chord = ChordBetween(sun, moon);
+  return {moon.angular_radius_deg / sun.angular_radius_deg,
+          2.0 * std::asin(std::min(0.5 * chord, 1.0)) / sun.angular_radius_rad()};
 }
 
 double UncoveredLight(const EclipsedDisk& disk, double wavelength_nm) {
@@ -142,12 +148,12 @@ double UncoveredLight(const EclipsedDisk& disk, double wavelength_nm) {
 }
 
 SolarEclipse::Moment EclipseAt(const Place& place, const UtcTime& instant) {
-  const SunPosition sun = SunAt(place, instant);
+  const SunInSky sun = TrueSunAt(place, instant);
   const double horizon_rad =
       SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad()))
           .true_elevation_rad;
-  return {instant, EclipsedDiskOf(sun, MoonAt(place, instant)),
-          sun.elevation_rad + sun.angular_radius_rad - horizon_rad};
+  return {instant, EclipsedDiskOf(sun, TrueMoonAt(place, instant)),
+          sun.elevation_rad() + sun.angular_radius_rad() - horizon_rad};
 }
 
 std::optional<SolarEclipse> FindSolarEclipse(const Place& place, const UtcTime& from,
@@ -200,18 +206,19 @@ std::optional<UtcTime> InstantOf(EclipseEvent event, const SolarEclipse& eclipse
 
 namespace {
 
-/// Raises a body, a SunPosition or MoonPosition, by refraction.
+/// Raises a body, a SunInSky or MoonPosition, by refraction.
 template <typename Body>
 Body Lifted(Body body, double height_m, const BendingAir& air) {
-  const double lift_rad = RefractionFromHeight(air, body.elevation_rad, height_m);
-  body.lower_for_air_rad = lift_rad - LiftForAir(air, body.elevation_rad);
-  body.elevation_rad += lift_rad;
+  const double true_rad = body.elevation_rad();
+  const double lift_rad = RefractionFromHeight(air, true_rad, height_m);
+  body.lower_for_air_deg = (lift_rad - LiftForAir(air, true_rad)) / kRadiansPerDegree;
+  body.elevation_deg += lift_rad / kRadiansPerDegree;
   return body;
 }
 
 }  // namespace
 
-SunPosition Refracted(const SunPosition& sun, double height_m, const BendingAir& air) {
+SunInSky Refracted(const SunInSky& sun, double height_m, const BendingAir& air) {
   return Lifted(sun, height_m, air);
 }
 
@@ -231,7 +238,7 @@ MoonDisk SkyBodies::ApparentMoonDisk(const BendingAir& air) const {
 }
 
 SkyBodies SkyBodiesAt(const Place& place, const UtcTime& instant) {
-  return {place, instant, SunAt(place, instant), MoonAt(place, instant)};
+  return {place, instant, TrueSunAt(place, instant), TrueMoonAt(place, instant)};
 }
 
 }  // namespace alpenglow::atmosphere

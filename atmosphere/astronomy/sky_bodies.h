@@ -41,7 +41,7 @@ struct EclipsedDisk {
 
 /// Returns the disks seen from one place at one time, without refraction, which flattens both disks
 /// equally. Radii are kSunRadius_m and kMoonRadius_m.
-[[nodiscard]] EclipsedDisk EclipsedDiskOf(const SunPosition& sun, const MoonPosition& moon);
+[[nodiscard]] EclipsedDisk EclipsedDiskOf(const SunInSky& sun, const MoonPosition& moon);
 
 /// Returns the fraction of the sun's light at a wavelength that is not covered by the moon, [0, 1]:
 /// exactly 1 if nothing and exactly 0 if everything is covered. Error below 1e-8, and below 1e-4 of
@@ -91,7 +91,7 @@ enum class EclipseEvent { kFirstContact, kSecondContact, kMaximum, kThirdContact
 
 /// Returns the sun with refraction by any air that bends rays gently (ApparentSunAt).
 /// @param sun  without refraction. @param height_m  of the eye above the ellipsoid.
-[[nodiscard]] SunPosition Refracted(const SunPosition& sun, double height_m, const BendingAir& air);
+[[nodiscard]] SunInSky Refracted(const SunInSky& sun, double height_m, const BendingAir& air);
 /// Returns the moon with refraction (ApparentMoonAt).
 [[nodiscard]] MoonPosition Refracted(const MoonPosition& moon, double height_m,
                                      const BendingAir& air);
@@ -100,7 +100,7 @@ enum class EclipseEvent { kFirstContact, kSecondContact, kMaximum, kThirdContact
 struct SkyBodies {
   Place place;
   UtcTime instant;
-  SunPosition sun;
+  SunInSky sun;
   MoonPosition moon;
 
   /// Returns the moon in front of the sun.
@@ -108,7 +108,7 @@ struct SkyBodies {
   /// Returns the fraction of the sun's light at 550 nm that the moon covers, [0, 1]; exactly 1 in
   /// totality.
   [[nodiscard]] double CoveredLight() const;
-  [[nodiscard]] SunPosition ApparentSun(const BendingAir& air) const {
+  [[nodiscard]] SunInSky ApparentSun(const BendingAir& air) const {
     return Refracted(sun, place.height_m, air);
   }
   /// Returns the disk of the moon with refraction, in the frame east, north, up of the place.

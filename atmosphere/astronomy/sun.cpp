@@ -20,42 +20,43 @@
 
 namespace alpenglow::atmosphere {
 
-SunPosition SunAt(const Place& place, const UtcTime& instant) {
-  return SunAt(place, instant, DeltaT(instant));
+SunInSky TrueSunAt(const Place& place, const UtcTime& instant) {
+  return TrueSunAt(place, instant, DeltaT(instant));
 }
 
-SunPosition SunAt(const Place& place, const UtcTime& instant, double delta_t_s) {
+SunInSky TrueSunAt(const Place& place, const UtcTime& instant, double delta_t_s) {
   const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
   const ApparentPlace sun = SeenFrom(place, EcefFromGcrs(instant, delta_t_s), bodies, bodies.sun);
-  return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au,
-          std::asin(kSunRadius_m / (sun.distance_au * kAstronomicalUnit_m)), sun.direction};
+  const double radius_rad = std::asin(kSunRadius_m / (sun.distance_au * kAstronomicalUnit_m));
+  return {sun.elevation_rad / kRadiansPerDegree, sun.azimuth_rad / kRadiansPerDegree,
+          sun.distance_au, radius_rad / kRadiansPerDegree};
 }
 
-SunPosition SunForAir(const SunPosition& seen) {
-  SunPosition sun = seen;
-  sun.elevation_rad -= seen.lower_for_air_rad;
-  sun.lower_for_air_rad = 0.0;
+SunInSky SunForAir(const SunInSky& seen) {
+  SunInSky sun = seen;
+  sun.elevation_deg = std::clamp(seen.elevation_deg - seen.lower_for_air_deg, -90.0, 90.0);
+  sun.lower_for_air_deg = 0.0;
   return sun;
 }
 
-SunPosition ApparentSunAt(const Place& place, const UtcTime& instant) {
+SunInSky ApparentSunAt(const Place& place, const UtcTime& instant) {
   return ApparentSunAt(place, instant, AlmanacAir());
 }
 
-SunPosition ApparentSunAt(const Place& place, const UtcTime& instant, const BendingAir& air) {
-  return Refracted(SunAt(place, instant), place.height_m, air);
+SunInSky ApparentSunAt(const Place& place, const UtcTime& instant, const BendingAir& air) {
+  return Refracted(TrueSunAt(place, instant), place.height_m, air);
 }
 
-Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad) {
+Vector<Enu> EnuFromAngles(double elevation_rad, double azimuth_rad) {
   const double horizontal = std::cos(elevation_rad);
   return {{horizontal * std::sin(azimuth_rad), horizontal * std::cos(azimuth_rad),
            std::sin(elevation_rad)}};
 }
 
-LightDirection DirectionOf(const SunPosition& apparent) {
-  const SunPosition for_air = SunForAir(apparent);
-  return {DirectionFromAngles(apparent.elevation_rad, apparent.azimuth_rad).xyz,
-          DirectionFromAngles(for_air.elevation_rad, for_air.azimuth_rad).xyz};
+LightDirection DirectionOf(const SunInSky& apparent) {
+  const SunInSky for_air = SunForAir(apparent);
+  return {EnuFromAngles(apparent.elevation_rad(), apparent.azimuth_rad()).xyz,
+          EnuFromAngles(for_air.elevation_rad(), for_air.azimuth_rad()).xyz};
 }
 
 VisibleDisk DiskOverHorizon(double mu_s, double horizon_mu, double radius_rad) {
@@ -149,9 +150,9 @@ Crossing CrossingOf(SunEvent event, const Place& place) {
 
 /// Returns the elevation of the sun above the elevation of a crossing [rad].
 double HeightOver(const Crossing& crossing, const Place& place, const UtcTime& instant) {
-  const SunPosition sun = SunAt(place, instant);
-  const double limb_rad = crossing.of_upper_limb ? sun.angular_radius_rad : 0.0;
-  return sun.elevation_rad + limb_rad - crossing.true_elevation_rad;
+  const SunInSky sun = TrueSunAt(place, instant);
+  const double limb_rad = crossing.of_upper_limb ? sun.angular_radius_rad() : 0.0;
+  return sun.elevation_rad() + limb_rad - crossing.true_elevation_rad;
 }
 
 struct EventSample {
@@ -225,7 +226,7 @@ std::optional<double> FirstChange(const Function& f, bool rising) {
 /// The sun's hour angle passes 0 within 17 minutes of mean noon (equation of time).
 double NoonOf(const Place& place, const UtcTime& midnight) {
   const auto hour_angle = [&](double time_s) {
-    const glm::dvec3 sun = SunAt(place, AddSeconds(midnight, time_s)).direction.xyz;
+    const glm::dvec3 sun = EcefTowards(TrueSunAt(place, AddSeconds(midnight, time_s)), place).xyz;
     return std::remainder(place.longitude_rad() - std::atan2(sun.y, sun.x), 2.0 * kPi);
   };
   constexpr double kReach_s = 1800.0;

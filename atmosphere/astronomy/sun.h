@@ -3,6 +3,8 @@
 // limb darkening). This header also compiles the shared source disk_light.glsl as C++.
 #pragma once
 
+#include <alpenglow/sun_and_moon.h>
+
 #include <optional>
 #include <string_view>
 
@@ -24,43 +26,40 @@ namespace alpenglow::shared {
 
 namespace alpenglow::atmosphere {
 
-/// The sun seen from a place, without refraction (topocentric, apparent) unless a function states
-/// otherwise.
-struct SunPosition {
-  double elevation_rad;       // above the horizontal plane of the ellipsoid
-  double azimuth_rad;         // [0, 2 pi), from north over east
-  double distance_au;         // from the place
-  double angular_radius_rad;  // of the disk
-  Vector<Ecef> direction;     // unit vector from the place to the sun
-  /// The elevation of the sun whose straight rays light the air is lower by this (SunForAir).
-  double lower_for_air_rad = 0.0;
-};
-
 /// Returns the sun whose straight rays light the air like the refracted rays of the visible sun
 /// (LiftForAir of refraction.h). The visible sun is used for its disk, the centre of its aureole,
 /// shadows and light on the ground. The sun returned here is used for columns of air between the
-/// sun and the air, the planet's shadow in it, and multiple scattering.
-[[nodiscard]] SunPosition SunForAir(const SunPosition& seen);
+/// sun and the air, the planet's shadow in it, and multiple scattering. It never stands beyond the
+/// nadir or the zenith.
+[[nodiscard]] SunInSky SunForAir(const SunInSky& seen);
 
-/// Returns the position of the sun. ERFA: IAU 2006/2000A precession-nutation, VSOP-type ephemeris
-/// (eraEpv00), aberration and parallax. Within 2 arcseconds of NREL SPA where delta-T is known.
-[[nodiscard]] SunPosition SunAt(const Place& place, const UtcTime& instant);
-/// Returns the position of the sun for a given TT - UT1 [s] (published comparisons specify it).
-[[nodiscard]] SunPosition SunAt(const Place& place, const UtcTime& instant, double delta_t_s);
+/// Returns the sun without refraction, topocentric and apparent: its elevation is above the
+/// horizontal plane of the ellipsoid, its azimuth in [0, 360). ERFA: IAU 2006/2000A
+/// precession-nutation, VSOP-type ephemeris (eraEpv00), aberration and parallax. Within 2 arcseconds
+/// of NREL SPA where delta-T is known.
+[[nodiscard]] SunInSky TrueSunAt(const Place& place, const UtcTime& instant);
+/// Returns this sun for a given TT - UT1 [s] (published comparisons specify it).
+[[nodiscard]] SunInSky TrueSunAt(const Place& place, const UtcTime& instant, double delta_t_s);
 
-/// Returns the sun with refraction as seen from the place's height: SunAt, with its elevation
+/// Returns the sun with refraction as seen from the place's height: TrueSunAt, with its elevation
 /// raised by RefractionFromHeight (refraction.h). SunForAir of the result is raised by LiftForAir.
-/// `direction` remains without refraction.
-[[nodiscard]] SunPosition ApparentSunAt(const Place& place, const UtcTime& instant);
+[[nodiscard]] SunInSky ApparentSunAt(const Place& place, const UtcTime& instant);
 /// Returns the sun with refraction by any air that bends rays gently.
-[[nodiscard]] SunPosition ApparentSunAt(const Place& place, const UtcTime& instant,
-                                        const BendingAir& air);
+[[nodiscard]] SunInSky ApparentSunAt(const Place& place, const UtcTime& instant,
+                                     const BendingAir& air);
 
 /// Returns the unit vector of an elevation and azimuth.
-[[nodiscard]] Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad);
+[[nodiscard]] Vector<Enu> EnuFromAngles(double elevation_rad, double azimuth_rad);
+
+/// Returns the unit vector from a place to a SunInSky or a MoonInSky that is seen there.
+template <typename Body>
+[[nodiscard]] Vector<Ecef> EcefTowards(const Body& body, const Place& place) {
+  return LocalFrame(kWgs84, place)
+      .EcefFromEnu(EnuFromAngles(body.elevation_rad(), body.azimuth_rad()));
+}
 
 /// Returns the direction of an apparent sun in the frame east, north, up of the place.
-[[nodiscard]] LightDirection DirectionOf(const SunPosition& apparent);
+[[nodiscard]] LightDirection DirectionOf(const SunInSky& apparent);
 
 /// Events of the sun on a local solar day.
 enum class SunEvent {

@@ -3,6 +3,7 @@
 /// Positions of the sun and the moon at a place and time, and the times of sunrise and twilight.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string_view>
 
@@ -29,6 +30,18 @@ struct SunInSky {
   [[nodiscard]] Direction ToSun() const;
   /// Returns the direction of the sun that lights the air: for Sky.
   [[nodiscard]] Direction ToSunForAir() const;
+
+  /// Returns the elevation [rad].
+  [[nodiscard]] constexpr double elevation_rad() const { return elevation_deg * kRadiansPerDegree; }
+  /// Returns the azimuth [rad].
+  [[nodiscard]] constexpr double azimuth_rad() const { return azimuth_deg * kRadiansPerDegree; }
+  /// Returns the angular radius [rad].
+  [[nodiscard]] constexpr double angular_radius_rad() const {
+    return angular_radius_deg * kRadiansPerDegree;
+  }
+
+ private:
+  static constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 };
 
 /// The moon as seen from a place.
@@ -39,6 +52,24 @@ struct MoonInSky {
   double angular_radius_deg = 0.0;    ///< of the disk
   double phase_angle_deg = 0.0;       ///< 0 at full moon, 180 at new moon
   double illuminated_fraction = 0.0;  ///< of the disk, by area, in [0, 1]
+  double sun_distance_au = 1.0;       ///< of the moon from the sun
+  double lower_for_air_deg = 0.0;     ///< as of SunInSky
+
+  /// Returns the elevation [rad].
+  [[nodiscard]] constexpr double elevation_rad() const { return elevation_deg * kRadiansPerDegree; }
+  /// Returns the azimuth [rad].
+  [[nodiscard]] constexpr double azimuth_rad() const { return azimuth_deg * kRadiansPerDegree; }
+  /// Returns the angular radius [rad].
+  [[nodiscard]] constexpr double angular_radius_rad() const {
+    return angular_radius_deg * kRadiansPerDegree;
+  }
+  /// Returns the phase angle [rad].
+  [[nodiscard]] constexpr double phase_angle_rad() const {
+    return phase_angle_deg * kRadiansPerDegree;
+  }
+
+ private:
+  static constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 };
 
 /// Returns the sun as seen from a place, with the refraction of an atmosphere. Without refraction

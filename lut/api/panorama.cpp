@@ -7,23 +7,13 @@
 
 #include "atmosphere/api/conversions.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/math/constants.h"
 #include "lut/api/conversions.h"
 #include "lut/cli/program.h"
 #include "lut/sky/panorama.h"
 
 namespace alpenglow {
 
-using atmosphere::kRadiansPerDegree;
-
 namespace {
-
-lut::PanoramaSun SunOf(const SunInSky& sun) {
-  RequireValid(sun);
-  return {sun.elevation_deg * kRadiansPerDegree, sun.azimuth_deg * kRadiansPerDegree,
-          sun.distance_au, sun.angular_radius_deg * kRadiansPerDegree,
-          (sun.elevation_deg - ElevationForAir_deg(sun)) * kRadiansPerDegree};
-}
 
 lut::PanoramaOrientation OrientationOf(PanoramaCentre centre) {
   switch (centre) {
@@ -57,7 +47,8 @@ HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options) {
   settings.width = options.width;
   settings.height = options.height;
   settings.altitude_m = options.altitude_m;
-  settings.sun = SunOf(options.sun);
+  RequireValid(options.sun);
+  settings.sun = options.sun;
   settings.orientation = OrientationOf(options.centre);
   settings.sun_disk = options.draws_sun;
   lut::Image image = lut::RenderPanorama(sky.state().lookup.single_scattering(),
@@ -76,9 +67,9 @@ HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options) {
 
 double HorizontalIlluminance(const Sky& sky, double altitude_m, const SunInSky& sun) {
   RequireVisible(sky, altitude_m);
+  RequireValid(sun);
   return lut::HorizontalIlluminance(sky.state().lookup.single_scattering(),
-                                    sky.state().lookup.multiple_scattering(), altitude_m,
-                                    SunOf(sun));
+                                    sky.state().lookup.multiple_scattering(), altitude_m, sun);
 }
 
 }  // namespace alpenglow

@@ -278,7 +278,7 @@ std::string PictureTimeText(const PanoramaAir& shared, const ReportEffort& effor
   PanoramaSettings settings;
   settings.width = width;
   settings.height = width / 2;
-  settings.sun.elevation_rad = 25.0 * kRadiansPerDegree;
+  settings.sun.elevation_deg = 25.0;
   const double seconds = Built(effort, [&] {
                            return RenderPanorama(shared.air, shared.multiple_scattering, settings);
                          }).second;

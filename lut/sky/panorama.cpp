@@ -164,10 +164,10 @@ double HalfWidthOfDisk(double angle, double zenith, double radius) {
 }
 
 /// Divides all pixels near the sun into parts that are small relative to its disk.
-std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun& sun) {
+std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const SunInSky& sun) {
   constexpr int kPiecesPerRadius = 12;
-  const double zenith = 0.5 * kPi - sun.elevation_rad;
-  const double radius = sun.angular_radius_rad;
+  const double zenith = 0.5 * kPi - sun.elevation_rad();
+  const double radius = sun.angular_radius_rad();
   const auto parts_of = [radius](double pixel_rad) {
     return static_cast<std::int64_t>(
         std::max(std::ceil(kPiecesPerRadius * pixel_rad / radius), 1.0));
@@ -188,14 +188,14 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun&
       const double weight = std::sin(angle) / static_cast<double>(across);
       const double width_rad = HalfWidthOfDisk(angle, zenith, radius);
       for (int x = 0; x < grid.width; ++x) {
-        const double from_sun = grid.Azimuth(x) - sun.azimuth_rad;
+        const double from_sun = grid.Azimuth(x) - sun.azimuth_rad();
         const double centre =
             std::remainder(-from_sun - kPi / grid.width, 2.0 * kPi) + kPi / grid.width;
         const PartsRange columns = PartsAround(centre / (2.0 * kPi) * grid.width,
                                                width_rad / (2.0 * kPi) * grid.width, across);
         for (std::int64_t i = columns.first; i < columns.last; ++i) {
           const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(across);
-          const double azimuth = grid.Azimuth(x + at) - sun.azimuth_rad;
+          const double azimuth = grid.Azimuth(x + at) - sun.azimuth_rad();
           const double rho =
               2.0 * std::asin(std::sqrt(std::min(HalfSine2(angle, zenith, azimuth), 1.0))) / radius;
           if (rho >= 1.0) continue;
@@ -339,17 +339,17 @@ Image RenderPanorama(const SingleScattering<float>& air,
                      const MultipleScattering& multiple_scattering,
                      const PanoramaSettings& settings, const std::function<void()>& row_done) {
   Image image(settings.width, settings.height);
-  const double mu_s = std::sin(settings.sun.elevation_for_air_rad());
+  const double mu_s = std::sin(SunForAir(settings.sun).elevation_rad());
   const SkyView view = SkyView(air, multiple_scattering, settings.altitude_m, mu_s,
                                settings.view_size.value_or(FineSize(
                                    SkyViewSizeFor(air.medium(), settings.altitude_m, mu_s))))
-                           .WithSunSeenAt(0.5 * kPi - settings.sun.elevation_rad);
+                           .WithSunSeenAt(0.5 * kPi - settings.sun.elevation_rad());
   const PanoramaGrid grid{settings.width, settings.height, CentreAzimuth(settings.orientation)};
   std::vector<double> from_sun;
   for (int x = 0; x < grid.width; ++x)
-    from_sun.push_back(grid.Azimuth(x + 0.5) - settings.sun.azimuth_rad);
+    from_sun.push_back(grid.Azimuth(x + 0.5) - settings.sun.azimuth_rad());
   const SkyAzimuths azimuths(view, from_sun);
-  const std::vector<float> srgb = SrgbFromRelative(air.medium(), settings.sun.distance);
+  const std::vector<float> srgb = SrgbFromRelative(air.medium(), settings.sun.distance_au);
   const std::vector<LayerPlace> layers = AddPanoramaLayers(settings.layers, image);
   const auto add_polarisation = [&](int y) {
     const PolarisedRow row(air, multiple_scattering, settings.altitude_m, mu_s,
@@ -380,19 +380,19 @@ Image RenderPanorama(const SingleScattering<float>& air,
 
 double HorizontalIlluminance(const SingleScattering<float>& air,
                              const MultipleScattering& multiple_scattering, double altitude_m,
-                             const PanoramaSun& sun) {
+                             const SunInSky& sun) {
   const Medium& medium = air.medium();
   const double h = std::max(altitude_m, 0.0);
-  const double mu_s = std::sin(sun.elevation_rad);
+  const double mu_s = std::sin(sun.elevation_rad());
   const double horizon = std::cos(SkyViewMap(medium, h, mu_s).horizon_zenith_angle_rad());
-  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun.angular_radius_rad);
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun.angular_radius_rad());
   const double mu = disk.mu_s_effective;
   const Bands<float> direct = air.TransmittanceToSpace(h, mu);
   const Bands<float> sky =
-      multiple_scattering.SkyIrradiance(h, std::sin(sun.elevation_for_air_rad()));
+      multiple_scattering.SkyIrradiance(h, std::sin(SunForAir(sun).elevation_rad()));
   std::vector<double> light;
   for (std::size_t band = 0; band < sky.count; ++band) {
-    light.push_back(medium.solar_irradiance[band] / (sun.distance * sun.distance) *
+    light.push_back(medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au) *
                     (double{sky[band]} + disk.fraction * std::max(mu, 0.0) * double{direct[band]}));
   }
   RequireFinite(std::span<const double>(light), "light of the ground");

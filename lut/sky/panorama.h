@@ -19,6 +19,8 @@
 //   Godot                      +y   +z = south        +x = east               -z
 #pragma once
 
+#include <alpenglow/sun_and_moon.h>
+
 #include <functional>
 #include <optional>
 #include <string>
@@ -61,23 +63,11 @@ enum class PanoramaOrientation { kNorth, kBlender, kOpenExr, kThree, kUnity, kGo
 /// Returns the azimuth, from north over east [rad], of the centre of a picture.
 [[nodiscard]] double CentreAzimuth(PanoramaOrientation orientation);
 
-/// The sun that a user places in the picture, by angles and without an ephemeris. Rays are straight.
-struct PanoramaSun {
-  double elevation_rad = 0.0;
-  double azimuth_rad = kPi;  // from north over east
-  double distance = 1.0;     // relative to the distance for which the medium's irradiance is given
-  double angular_radius_rad = kSunAngularRadius_rad;
-  double lower_for_air_rad = 0.0;  // as in SunPosition (sun.h)
-
-  /// Returns the elevation [rad] of the sun that lights the air.
-  [[nodiscard]] double elevation_for_air_rad() const { return elevation_rad - lower_for_air_rad; }
-};
-
 struct PanoramaSettings {
   int width = 2048;
   int height = 1024;
   double altitude_m = 2.0;  // altitude of the observer
-  PanoramaSun sun;
+  SunInSky sun;             // with straight rays
   PanoramaOrientation orientation = PanoramaOrientation::kNorth;
   bool sun_disk = false;  // draw the sun itself: a few pixels of some 1e9 cd/m^2
   bool compass = false;   // paint N, E, S and W on the horizontal
@@ -102,6 +92,6 @@ struct PanoramaSettings {
 /// sun's disk cut by the horizon.
 [[nodiscard]] double HorizontalIlluminance(const SingleScattering<float>& air,
                                            const MultipleScattering& multiple_scattering,
-                                           double altitude_m, const PanoramaSun& sun);
+                                           double altitude_m, const SunInSky& sun);
 
 }  // namespace alpenglow::lut

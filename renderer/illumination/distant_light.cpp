@@ -7,8 +7,8 @@
 
 namespace alpenglow::renderer {
 
-DistantLight SunlightOf(const SunPosition& apparent, const Medium& medium) {
-  DistantLight sun{LightSource::kSun, DirectionOf(apparent), apparent.angular_radius_rad,
+DistantLight SunlightOf(const SunInSky& apparent, const Medium& medium) {
+  DistantLight sun{LightSource::kSun, DirectionOf(apparent), apparent.angular_radius_rad(),
                    BandLight(medium.solar_irradiance.size())};
   for (std::size_t band = 0; band < sun.irradiance.count; ++band) {
     sun.irradiance[band] = static_cast<float>(medium.solar_irradiance[band] /

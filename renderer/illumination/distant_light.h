@@ -41,7 +41,7 @@ struct DistantLight {
 };
 
 /// Returns the light of the sun in the frame east, north, up of the place that sees it.
-[[nodiscard]] DistantLight SunlightOf(const SunPosition& apparent, const Medium& medium);
+[[nodiscard]] DistantLight SunlightOf(const SunInSky& apparent, const Medium& medium);
 
 /// A distant light at a point, without shadows of terrain.
 struct LocalLight {

@@ -12,12 +12,12 @@
 
 namespace alpenglow::renderer {
 
-glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const SkyBodies& bodies) {
-  const double lift_rad = apparent_sun.elevation_rad - bodies.sun.elevation_rad;
-  return DirectionFromAngles(bodies.moon.elevation_rad + lift_rad, bodies.moon.azimuth_rad).xyz;
+glm::dvec3 ToMoonBefore(const SunInSky& apparent_sun, const SkyBodies& bodies) {
+  const double lift_rad = apparent_sun.elevation_rad() - bodies.sun.elevation_rad();
+  return EnuFromAngles(bodies.moon.elevation_rad() + lift_rad, bodies.moon.azimuth_rad()).xyz;
 }
 
-Lighting LightingOf(const SunPosition& sun, const UtcTime& instant, const Place& place,
+Lighting LightingOf(const SunInSky& sun, const UtcTime& instant, const Place& place,
                     const Medium& medium, double wetness) {
   return LightingOf(SunlightOf(sun, medium), instant, place, medium, wetness);
 }

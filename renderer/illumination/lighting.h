@@ -31,7 +31,7 @@ namespace alpenglow::renderer {
 /// Returns the unit direction (east, north, up of the eye) to the moon during a solar eclipse. It
 /// is lifted by the refraction of the sun's centre behind it, because the sun is drawn as a round
 /// disk and the moon's disk must be round too.
-[[nodiscard]] glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const SkyBodies& bodies);
+[[nodiscard]] glm::dvec3 ToMoonBefore(const SunInSky& apparent_sun, const SkyBodies& bodies);
 
 /// The sun partly covered by the moon at Lighting::moon.
 struct EclipsedSun {
@@ -76,8 +76,8 @@ struct Lighting {
 
 /// Returns the lighting for the sun's position, with the seasonal cover of the ground at a place.
 /// @param wetness  see MountainSurface.
-[[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcTime& instant,
-                                  const Place& place, const Medium& medium, double wetness = 0.0);
+[[nodiscard]] Lighting LightingOf(const SunInSky& sun, const UtcTime& instant, const Place& place,
+                                  const Medium& medium, double wetness = 0.0);
 /// Returns the lighting by any distant light.
 [[nodiscard]] Lighting LightingOf(const DistantLight& light, const UtcTime& instant,
                                   const Place& place, const Medium& medium, double wetness = 0.0);

@@ -40,7 +40,7 @@ bool Scatters(const Medium& medium) {
 
 glm::dvec3 Refracted(const glm::dvec3& enu, const RefractedView& view) {
   const double elevation = std::asin(std::clamp(enu.z, -1.0, 1.0));
-  return DirectionFromAngles(view.LiftedElevationOf(elevation), std::atan2(enu.x, enu.y)).xyz;
+  return EnuFromAngles(view.LiftedElevationOf(elevation), std::atan2(enu.x, enu.y)).xyz;
 }
 
 StarLight LightOf(const PointLight& point, const glm::dvec3& direction, const BandColour& colour) {

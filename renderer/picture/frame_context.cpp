@@ -184,12 +184,12 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
   const bool moves_terrain = geometry.HasTerrain() && MostLift(frame, height_m) > half_pixel;
   if (!may_see_sun && !may_see_moon && !may_see_sea && !moves_terrain) return nullptr;
   const glm::dmat3& frame_from_enu = observer.from_eye.axes();
-  const SunPosition& sun = observer.bodies.sun;
+  const SunInSky& sun = observer.bodies.sun;
   const MoonPosition& moon = observer.bodies.moon;
   auto bent = std::make_shared<RefractedViewRays>(RefractedViewRays{
       RefractedView(medium, height_m), up,
-      frame_from_enu * DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
-      frame_from_enu * DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz});
+      frame_from_enu * EnuFromAngles(sun.elevation_rad(), sun.azimuth_rad()).xyz,
+      frame_from_enu * EnuFromAngles(moon.elevation_rad(), moon.azimuth_rad()).xyz});
   const auto moves = [&](const glm::dvec3& to_disk, double radius_rad) {
     return ChangeOfDisk(bent->view, Elevation(to_disk, up), radius_rad,
                         medium.wavelengths_nm.size()) > half_pixel;

@@ -202,7 +202,7 @@ Lighting LightingAt(const PreparedScene& scene, const Observer& observer) {
   const BendingAir air = GentleAirOf(medium);
   const SkyBodies& bodies = observer.bodies;
   const glm::dmat3& frame_from_enu = observer.from_eye.axes();
-  const SunPosition sun = bodies.ApparentSun(air);
+  const SunInSky sun = bodies.ApparentSun(air);
   Lighting light =
       LightingOf(sun, bodies.instant, scene.scene().place, medium, scene.scene().ground.wetness);
   light.source.direction = frame_from_enu * light.source.direction;

@@ -317,7 +317,7 @@ const Medium& SceneRenderer::medium() const { return scene_->medium(); }
 double SceneRenderer::eye_height_m() const { return scene_->ground().eye_height_m; }
 const std::string& SceneRenderer::terrain_message() const { return scene_->terrain_message(); }
 
-SunPosition SceneRenderer::ApparentSun(const CameraSample& camera_sample) const {
+SunInSky SceneRenderer::ApparentSun(const CameraSample& camera_sample) const {
   return ObserverOf(*scene_, camera_sample).bodies.ApparentSun(GentleAirOf(scene_->medium()));
 }
 

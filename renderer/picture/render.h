@@ -143,7 +143,7 @@ class SceneRenderer {
   /// Returns sun and moon at the eye, for CameraSample::bodies.
   [[nodiscard]] SkyBodies BodiesOver(const CameraSample& camera_sample) const;
   /// Returns the sun as seen from the eye with refraction, where the picture shows it.
-  [[nodiscard]] SunPosition ApparentSun(const CameraSample& camera_sample) const;
+  [[nodiscard]] SunInSky ApparentSun(const CameraSample& camera_sample) const;
 
   /// Returns the medium on the osculating sphere.
   [[nodiscard]] const Medium& medium() const;

@@ -21,12 +21,12 @@ ShaftView ViewWithSun(double eye_height_m, double heading_deg, double sun_elevat
                       int height) {
   const CameraRays camera(CameraFromDegrees({eye_height_m, false}, heading_deg, 0.0, 0.0, 70.0),
                           width, height);
-  ShaftView view{{0.0, 0.0, eye_height_m},
-                 DirectionFromAngles(sun_elevation_deg * kRadiansPerDegree,
-                                     (heading_deg + 20.0) * kRadiansPerDegree)
-                     .xyz,
-                 0.265 * kRadiansPerDegree,
-                 {}};
+  ShaftView view{
+      {0.0, 0.0, eye_height_m},
+      EnuFromAngles(sun_elevation_deg * kRadiansPerDegree, (heading_deg + 20.0) * kRadiansPerDegree)
+          .xyz,
+      0.265 * kRadiansPerDegree,
+      {}};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) view.directions.push_back(camera.Direction(x + 0.5, y + 0.5));
   }

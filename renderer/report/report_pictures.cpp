@@ -191,8 +191,7 @@ class PicturesTopic {
   [[nodiscard]] double Pixels() const { return static_cast<double>(width_ * height_); }
 
   [[nodiscard]] SunRange SunOf(std::size_t r) const {
-    const double deg =
-        scenes_[r].renderer->ApparentSun(scenes_[r].instant).elevation_rad / kRadiansPerDegree;
+    const double deg = scenes_[r].renderer->ApparentSun(scenes_[r].instant).elevation_deg;
     const double rounded = std::round(10.0 * deg) / 10.0;
     return {rounded, rounded};
   }

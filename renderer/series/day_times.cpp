@@ -60,8 +60,8 @@ DayTimes TimesOf(const EventDay& day) {
     times.at[i] = FindDailyEvent(kTimesOfDay[i], day);
   }
   const UtcTime noon = *FindSunEvent(SunEvent::kNoon, day.place, *day.around);
-  times.noon_elevation_deg = ApparentSunAt(day.place, noon).elevation_rad / kRadiansPerDegree;
-  times.moon_illuminated = MoonAt(day.place, noon).IlluminatedFraction();
+  times.noon_elevation_deg = ApparentSunAt(day.place, noon).elevation_deg;
+  times.moon_illuminated = TrueMoonAt(day.place, noon).illuminated_fraction;
   times.eclipse = EclipseOf(day, times);
   return times;
 }

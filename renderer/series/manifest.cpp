@@ -341,12 +341,12 @@ FrameRecord RecordOf(const Frame& frame, const Place& place, const std::optional
   record.Set("frame", frame.number);
   record.Set("utc", FormatUtc(frame.instant));
   record.Set("local_time", zone ? FormatInZone(frame.instant, *zone) : "");
-  record.Set("sun_azimuth_deg", bodies.sun.azimuth_rad / kRadiansPerDegree);
-  record.Set("sun_elevation_deg", bodies.sun.elevation_rad / kRadiansPerDegree);
+  record.Set("sun_azimuth_deg", bodies.sun.azimuth_deg);
+  record.Set("sun_elevation_deg", bodies.sun.elevation_deg);
   record.Set("sun_covered", has_moon ? bodies.CoveredLight() : 0.0);
-  record.Set("moon_azimuth_deg", bodies.moon.azimuth_rad / kRadiansPerDegree);
-  record.Set("moon_elevation_deg", bodies.moon.elevation_rad / kRadiansPerDegree);
-  record.Set("moon_illuminated", bodies.moon.IlluminatedFraction());
+  record.Set("moon_azimuth_deg", bodies.moon.azimuth_deg);
+  record.Set("moon_elevation_deg", bodies.moon.elevation_deg);
+  record.Set("moon_illuminated", bodies.moon.illuminated_fraction);
   return record;
 }
 

@@ -99,8 +99,8 @@ std::vector<Minute> DayOf(const UtcTime& begin, const SceneRenderer& renderer, c
     Minute made{{static_cast<int>(day.size()), now}, renderer.Render(now, settings)};
     made.lux = renderer.Illuminance(now);
     made.light = MeanLuminance(made.picture);
-    made.sun_deg = renderer.ApparentSun(now).elevation_rad / kRadiansPerDegree;
-    made.moon_deg = MoonAt(place, now).elevation_rad / kRadiansPerDegree;
+    made.sun_deg = renderer.ApparentSun(now).elevation_deg;
+    made.moon_deg = TrueMoonAt(place, now).elevation_deg;
     day.push_back(std::move(made));
   }
   return day;

@@ -29,10 +29,10 @@ const std::shared_ptr<const GroundSite>& TheSite() {
 }
 
 Lighting SunAt(double elevation_deg) {
-  SunPosition sun{};
-  sun.elevation_rad = elevation_deg * kRadiansPerDegree;
-  sun.azimuth_rad = 2.0;
-  sun.angular_radius_rad = 0.00465;
+  SunInSky sun{};
+  sun.elevation_deg = elevation_deg;
+  sun.azimuth_deg = 2.0 / kRadiansPerDegree;
+  sun.angular_radius_deg = 0.00465 / kRadiansPerDegree;
   sun.distance_au = 1.0;
   return LightingOf(sun, ParseInstant("2026-03-21T12:00:00Z"), kPlace, TheSite()->medium());
 }

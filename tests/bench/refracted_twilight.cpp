@@ -34,7 +34,7 @@ constexpr std::array kElevations_deg{5.0,  3.0,  2.0,  1.0,  0.0,  -1.0, -2.0,
                                      -3.0, -4.0, -5.0, -6.0, -7.0, -8.0};
 
 glm::dvec3 Towards(double elevation_rad, double azimuth_rad) {
-  return DirectionFromAngles(elevation_rad, azimuth_rad).xyz;
+  return EnuFromAngles(elevation_rad, azimuth_rad).xyz;
 }
 
 /// A rule that lifts the sun whose straight rays light the air.

@@ -253,8 +253,7 @@ void Compare() {
       const double elevation = degrees * kRadiansPerDegree;
       const double azimuth =
           std::atan2(view.forward.x, view.forward.y) + beside * kRadiansPerDegree;
-      const glm::dvec3 to_sun =
-          glm::normalize(InMesh(view, DirectionFromAngles(elevation, azimuth).xyz));
+      const glm::dvec3 to_sun = glm::normalize(InMesh(view, EnuFromAngles(elevation, azimuth).xyz));
       const std::vector<double> reference = Reference(view, to_sun);
       for (const auto& [name, quality] :
            {std::pair{"low", kLowShade}, std::pair{"medium", kMediumShade},

@@ -257,10 +257,10 @@ const Place kFollowedPlace{46.5, 8.0, 0.0};
 constexpr GroundExtent kSmall{8e3, 128};
 
 DistantLight SunAt(double elevation_deg, double azimuth_rad) {
-  SunPosition sun{};
-  sun.elevation_rad = elevation_deg * kRadiansPerDegree;
-  sun.azimuth_rad = azimuth_rad;
-  sun.angular_radius_rad = 0.00465;
+  SunInSky sun{};
+  sun.elevation_deg = elevation_deg;
+  sun.azimuth_deg = azimuth_rad / kRadiansPerDegree;
+  sun.angular_radius_deg = 0.00465 / kRadiansPerDegree;
   sun.distance_au = 1.0;
   return SunlightOf(sun, MediumPreset("bruneton2017"));
 }

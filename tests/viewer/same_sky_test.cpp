@@ -31,7 +31,7 @@ const char* const kSkyInstant = "2026-06-21T18:15:00Z";  // the sun is 9 degrees
 glm::dvec3 ToPixel(int x, int y) {
   const double azimuth = 2.0 * kPi * ((x + 0.5) / kPanoramaWidth - 0.5);
   const double elevation = kPi * (0.5 - (y + 0.5) / kPanoramaHeight);
-  return DirectionFromAngles(elevation, azimuth).xyz;
+  return EnuFromAngles(elevation, azimuth).xyz;
 }
 
 double LuminanceOfPixel(const Image& image, int x, int y) {
@@ -43,8 +43,8 @@ double LuminanceOfPixel(const Image& image, int x, int y) {
 // horizon, without 14 degrees around the sun: pictures have its disk, the panorama for lighting does
 // not, and each smooths the light beside it in its own way.
 double SkyDifferenceOf(const Image& image, const Image& expected) {
-  const SunPosition sun =
-      SunAt({kSkyLatitude_deg, kSkyLongitude_deg, 0.0}, ParseInstant(kSkyInstant));
+  const SunInSky sun =
+      TrueSunAt({kSkyLatitude_deg, kSkyLongitude_deg, 0.0}, ParseInstant(kSkyInstant));
   const glm::dvec3 to_sun = DirectionOf(sun).seen;
   double squares = 0.0, count = 0.0;
   for (int y = 0; y < kPanoramaHeight / 2 - 1; ++y) {

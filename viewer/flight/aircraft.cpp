@@ -49,7 +49,7 @@ glm::dvec3 UnitAcross(const glm::dvec3& vector, const glm::dvec3& along,
   return length < 1e-9 ? otherwise : across / length;
 }
 
-glm::dvec3 DirectionOf(const AircraftState& state) {
+glm::dvec3 CourseOf(const AircraftState& state) {
   const double speed = glm::length(state.velocity.xyz);
   return speed < 1e-6 ? state.ahead.xyz : state.velocity.xyz / speed;
 }
@@ -81,7 +81,7 @@ double DragCoefficient(const AircraftKind& kind, double lift_coefficient, double
 double PressureOnWing(const AircraftState& state, const AircraftKind& kind,
                       const Surroundings& here) {
   const double speed = glm::length(state.velocity.xyz);
-  const double straight = std::max(glm::dot(DirectionOf(state), state.ahead.xyz), 0.0);
+  const double straight = std::max(glm::dot(CourseOf(state), state.ahead.xyz), 0.0);
   return 0.5 * here.air.density_kg_per_m3 * speed * speed * kind.wing_area_m2 * straight;
 }
 
@@ -97,7 +97,7 @@ glm::dvec3 Acceleration(const AircraftState& state, const AircraftKind& kind,
                         const Ellipsoid& ellipsoid) {
   const Surroundings here = SurroundingsAt(ellipsoid, state.place);
   const double speed = glm::length(state.velocity.xyz);
-  const glm::dvec3 direction = DirectionOf(state);
+  const glm::dvec3 direction = CourseOf(state);
   const glm::dvec3 lift = UnitAcross(state.up.xyz, direction, state.up.xyz);
   const double pressure_N = PressureOnWing(state, kind, here);
   const double coefficient = LiftCoefficient(state, kind, here);
@@ -243,7 +243,7 @@ glm::dvec3 TurnedAbout(const glm::dvec3& axis, double angle_rad, const glm::dvec
 AircraftState Pointed(const AircraftState& state, double step_s) {
   constexpr double kFastest_rad_per_s = 2.5, kSlowest_m_per_s = 1.0;
   AircraftState next = state;
-  const glm::dvec3 path = DirectionOf(state);
+  const glm::dvec3 path = CourseOf(state);
   if (glm::length(state.velocity.xyz) > kSlowest_m_per_s) {
     const double apart = AngleBetween(state.ahead.xyz, path);
     const glm::dvec3 toward = UnitAcross(path, state.ahead.xyz, state.up.xyz);

@@ -57,7 +57,7 @@ bool CanHappen(SunEvent event, const Place& place, const UtcTime& day) {
       at_horizon ? SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad()))
                        .true_elevation_rad
                  : kTwilight_rad;
-  const double declination_rad = std::asin(SunAt(place, day).direction.xyz.z);
+  const double declination_rad = std::asin(EcefTowards(TrueSunAt(place, day), place).xyz.z);
   const double highest_rad = 0.5 * kPi - std::abs(place.latitude_rad() - declination_rad);
   const double lowest_rad = std::abs(place.latitude_rad() + declination_rad) - 0.5 * kPi;
   return highest_rad > wanted_rad - kMargin_rad && lowest_rad < wanted_rad + kMargin_rad;

@@ -32,12 +32,10 @@ class Sky {
         horizon_rad_(SkyViewMap(medium_, altitude_m_, 1.0).horizon_zenith_angle_rad()) {}
 
   /// @param elevation_deg  above the sea horizon.
-  [[nodiscard]] std::array<double, 3> LinearSrgb(double elevation_deg,
-                                                 const SunPosition& sun) const {
+  [[nodiscard]] std::array<double, 3> LinearSrgb(double elevation_deg, const SunInSky& sun) const {
     const double zenith_deg = horizon_rad_ / kRadiansPerDegree - elevation_deg;
-    const auto under = [&](const SunPosition& at) {
-      return RayFromAngles(altitude_m_, zenith_deg, 0.0,
-                           90.0 - at.elevation_rad / kRadiansPerDegree);
+    const auto under = [&](const SunInSky& at) {
+      return RayFromAngles(altitude_m_, zenith_deg, 0.0, 90.0 - at.elevation_deg);
     };
     const ViewRay ray = under(SunForAir(sun));
     const double nu_seen = under(sun).nu;
@@ -107,8 +105,8 @@ DayStrip MakeDayStrip(const DayStripRequest& request) {
   const BendingAir refracting = GentleAirOf(request.multiple_scattering->medium());
   for (int x = 0; x < request.columns; ++x) {
     const UtcTime instant = AddSeconds(request.begin, (x + 0.5) / request.columns * kSecondsPerDay);
-    const SunPosition sun = ApparentSunAt(request.place, instant, refracting);
-    strip.sun_elevation_rad.push_back(sun.elevation_rad);
+    const SunInSky sun = ApparentSunAt(request.place, instant, refracting);
+    strip.sun_elevation_rad.push_back(sun.elevation_rad());
     Column column;
     for (std::size_t row = 0; row < kRows; ++row)
       column[row] = sky.LinearSrgb(kElevations_deg[row], sun);

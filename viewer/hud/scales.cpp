@@ -364,8 +364,7 @@ HorizonView::HorizonView(const HudFlight& flight, int width, int height)
     : rays_(CameraOf(flight), width, height), middle_(0.5 * width, 0.5 * height) {}
 
 std::optional<glm::dvec2> HorizonView::PixelOf(const Course& direction) const {
-  const auto place =
-      rays_.PlaceOf(DirectionFromAngles(direction.climb_rad, direction.heading_rad).xyz);
+  const auto place = rays_.PlaceOf(EnuFromAngles(direction.climb_rad, direction.heading_rad).xyz);
   if (!place) return std::nullopt;
   constexpr double kFurthest = 8.0;  // half widths
   const glm::dvec2 pixel((*place)[0], (*place)[1]);

@@ -8,7 +8,7 @@ namespace {
 
 std::vector<SkyDisk> DisksIn(const PaintedView& view, const FrameSky& sky) {
   std::vector<SkyDisk> disks{
-      {LightSource::kSun, DirectionOf(sky.sun).seen, sky.sun.angular_radius_rad}};
+      {LightSource::kSun, DirectionOf(sky.sun).seen, sky.sun.angular_radius_rad()}};
   if (sky.moon)
     disks.push_back({LightSource::kMoon, sky.moon->direction.seen, sky.moon->radius_rad});
   std::erase_if(disks, [&](const SkyDisk& disk) {

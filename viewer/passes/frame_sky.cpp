@@ -44,7 +44,7 @@ DistantLight BesideMoon(const DistantLight& sun, const SkyBodies& bodies, const 
 }
 
 // Returns the lights of a planet with a moon.
-LightsOfSky LightsOf(const SkyBodies& bodies, const SunPosition& sun, const MoonDisk& moon,
+LightsOfSky LightsOf(const SkyBodies& bodies, const SunInSky& sun, const MoonDisk& moon,
                      const AirOfSky& air, double altitude_m) {
   // A sky that contributes a ten-thousandth on a level surface contributes a five-hundredth near
   // the horizon below its light.
@@ -52,7 +52,7 @@ LightsOfSky LightsOf(const SkyBodies& bodies, const SunPosition& sun, const Moon
   const Medium& medium = air.air->medium();
   const DistantLight whole_sun = SunlightOf(sun, medium);
   const DistantLight by_sun = BesideMoon(whole_sun, bodies, medium);
-  if (sun.elevation_rad > kMoonDoesNotCount_rad) return {by_sun};
+  if (sun.elevation_rad() > kMoonDoesNotCount_rad) return {by_sun};
   const DistantLight by_moon =
       MoonlightOf(moon, bodies, MoonColour(moon, medium.wavelengths_nm), whole_sun.irradiance);
   const std::size_t green = GreenBand(medium.wavelengths_nm);
@@ -60,7 +60,7 @@ LightsOfSky LightsOf(const SkyBodies& bodies, const SunPosition& sun, const Moon
   const auto of_moon = double{LevelLight(by_moon, air, altitude_m)[green]};
   if (of_moon <= kUnseenShare * of_sun) return {by_sun};
   if (of_sun <= kUnseenShare * of_moon) return {by_moon};
-  if (sun.elevation_rad < kSetOnLand_rad) return {by_moon, by_sun};
+  if (sun.elevation_rad() < kSetOnLand_rad) return {by_moon, by_sun};
   return {by_sun, by_moon};
 }
 

@@ -61,7 +61,7 @@ struct AirOfSky {
 /// Sun, moon and their light, as one place sees them at one instant.
 struct FrameSky {
   SkyBodies bodies;              // without refraction
-  SunPosition sun;               // apparent
+  SunInSky sun;                  // apparent
   std::optional<MoonDisk> moon;  // apparent, before the sun in an eclipse; empty: there is none
   bool is_eclipse;               // whether the moon covers part of the sun
   LightsOfSky lights;

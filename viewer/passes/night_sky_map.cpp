@@ -36,7 +36,7 @@ NightSkyMap NightSkyMapOver(const Place& eye, const UtcTime& now, const Medium& 
     const double elevation = kPi * ((row + 0.5) / NightSkyMap::kRows - 0.5);
     for (int column = 0; column < NightSkyMap::kColumns; ++column) {
       const double azimuth = 2.0 * kPi * (column + 0.5) / NightSkyMap::kColumns;
-      map.above.push_back(GpuBandsOf(night.Above(DirectionFromAngles(elevation, azimuth).xyz)));
+      map.above.push_back(GpuBandsOf(night.Above(EnuFromAngles(elevation, azimuth).xyz)));
     }
   }
   return map;

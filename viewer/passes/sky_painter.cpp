@@ -197,7 +197,7 @@ SkyPainter::DisksInAir SkyPainter::InAir(const Frame& frame) {
   };
   DisksInAir seen{
       sky.sun, sky.moon.value_or(MoonDisk{}),
-      follow(refracted_sun_, DirectionOf(sky.sun).seen, sky.sun.angular_radius_rad),
+      follow(refracted_sun_, DirectionOf(sky.sun).seen, sky.sun.angular_radius_rad()),
       sky.moon ? follow(refracted_moon_, sky.moon->direction.seen, sky.moon->radius_rad) : nullptr};
   if (sky.is_eclipse) seen.refracted_moon = seen.refracted_sun;
   if (seen.refracted_sun != nullptr) seen.sun = sky.bodies.sun;
@@ -239,7 +239,7 @@ std::vector<PictureStage> StagesAfter(const PictureStage& stage, const FrameSky&
   next[2].two_lights = !stage.two_lights;
   next[3].has_night = !stage.has_night;
   next[4].other_has_set = !stage.other_has_set;
-  if (!sky.moon || sky.sun.elevation_rad > kBeforeDusk_rad) next.resize(2);
+  if (!sky.moon || sky.sun.elevation_rad() > kBeforeDusk_rad) next.resize(2);
   std::vector<PictureStage> stages;
   for (const PictureStage& one : next)
     for (const PictureStage::Pass pass : {kSky, kUnoccludedSky, kLand})
@@ -348,7 +348,8 @@ void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const Frame& 
   DisksInAir seen = InAir(alone);
   glm::dvec2 shares(1.0, 0.0);
   if (disk.of == LightSource::kSun) {
-    seen.sun.angular_radius_rad = drawn_rad;  // the sun has its whole irradiance at any size
+    seen.sun.angular_radius_deg =
+        drawn_rad / kRadiansPerDegree;  // the sun has its whole irradiance at any size
   } else {
     seen.moon.radius_rad = drawn_rad;
     shares = {0.0, std::pow(disk.radius_rad / drawn_rad, 2)};

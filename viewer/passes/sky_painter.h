@@ -102,7 +102,7 @@ class SkyPainter {
   /// True positions of disks that refraction changes, with that refraction. Null: a disk is drawn
   /// at its apparent position.
   struct DisksInAir {
-    SunPosition sun;
+    SunInSky sun;
     MoonDisk moon;
     const RefractedDisk *refracted_sun, *refracted_moon;
   };

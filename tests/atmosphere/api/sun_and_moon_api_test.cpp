@@ -90,8 +90,8 @@ TEST(SunInSky, IsTheSunOfTheLayerBelow) {
   const auto instant = atmosphere::ParseInstant("2026-06-21T09:30:00Z");
   const auto expected = atmosphere::ApparentSunAt(place, instant, atmosphere::GentleAirOf(medium));
   const SunInSky sun = SunAt(kFuji, TimeFromText("2026-06-21T09:30:00Z"));
-  EXPECT_EQ(sun.elevation_deg, expected.elevation_rad / kRadiansPerDegree);
-  EXPECT_EQ(sun.azimuth_deg, expected.azimuth_rad / kRadiansPerDegree);
+  EXPECT_EQ(sun.elevation_deg, expected.elevation_deg);
+  EXPECT_EQ(sun.azimuth_deg, expected.azimuth_deg);
   EXPECT_EQ(sun.distance_au, expected.distance_au);
   EXPECT_GT(sun.ToSun().up, sun.ToSunForAir().up);
 }
@@ -103,9 +103,9 @@ TEST(MoonInSky, IsTheMoonOfTheLayerBelow) {
                                                    atmosphere::ParseInstant("2026-06-21T09:30:00Z"),
                                                    atmosphere::GentleAirOf(medium));
   const MoonInSky moon = MoonAt(kFuji, TimeFromText("2026-06-21T09:30:00Z"));
-  EXPECT_EQ(moon.elevation_deg, expected.elevation_rad / kRadiansPerDegree);
-  EXPECT_EQ(moon.azimuth_deg, expected.azimuth_rad / kRadiansPerDegree);
-  EXPECT_EQ(moon.illuminated_fraction, expected.IlluminatedFraction());
+  EXPECT_EQ(moon.elevation_deg, expected.elevation_deg);
+  EXPECT_EQ(moon.azimuth_deg, expected.azimuth_deg);
+  EXPECT_EQ(moon.illuminated_fraction, expected.illuminated_fraction);
 }
 
 TEST(SunEventTime, IsThatOfTheLayerBelow) {

@@ -23,11 +23,13 @@ constexpr double kArcsecond = kRadiansPerDegree / 3600.0;
 constexpr Place kGeocentre{0.0, 0.0, -6378137.0};
 
 /// Returns the moon at an instant of terrestrial time.
-MoonPosition AtTerrestrial(const char* time) { return MoonAt(kGeocentre, ParseInstant(time), 0.0); }
+MoonPosition AtTerrestrial(const char* time) {
+  return TrueMoonAt(kGeocentre, ParseInstant(time), 0.0);
+}
 
 /// Returns the position angle of the middle of the bright limb: from north over east, [0, 2 pi).
-double BrightLimb_rad(const MoonPosition& moon) {
-  const glm::dvec3& at = moon.direction.xyz;
+double BrightLimb_rad(const MoonPosition& moon, const Place& place) {
+  const glm::dvec3 at = EcefTowards(moon, place).xyz;
   const glm::dvec3 east = glm::cross(glm::dvec3(0.0, 0.0, 1.0), at);
   const glm::dvec3 north = glm::cross(at, east);
   const double angle =
@@ -39,75 +41,79 @@ double BrightLimb_rad(const MoonPosition& moon) {
 TEST(Moon, ExampleOfMeeus) {
   const MoonPosition moon = AtTerrestrial("1992-04-12T00:00:00Z");
   EXPECT_NEAR(moon.distance_m / 1e3, 368409.7, 20.0) << "of Meeus' selection of terms";
-  EXPECT_NEAR(std::asin(moon.direction.xyz.z), 13.768368 * kRadiansPerDegree, 10.0 * kArcsecond)
+  const glm::dvec3 towards = EcefTowards(moon, kGeocentre).xyz;
+  EXPECT_NEAR(std::asin(towards.z), 13.768368 * kRadiansPerDegree, 10.0 * kArcsecond)
       << "apparent declination";
   const double day = ParseInstant("1992-04-12T00:00:00Z").modified_julian_day;
   const double sidereal = eraGst06a(2400000.5, day, 2400000.5, day);
-  const double ascension = sidereal + std::atan2(moon.direction.xyz.y, moon.direction.xyz.x);
+  const double ascension = sidereal + std::atan2(towards.y, towards.x);
   EXPECT_NEAR(std::remainder(ascension - 134.688470 * kRadiansPerDegree, 2.0 * kPi), 0.0,
               20.0 * kArcsecond)
       << "apparent right ascension";
-  EXPECT_NEAR(moon.phase_angle_rad / kRadiansPerDegree, 69.0756, 0.01);
-  EXPECT_NEAR(moon.IlluminatedFraction(), 0.6786, 2e-4);
-  EXPECT_NEAR(BrightLimb_rad(moon) / kRadiansPerDegree, 285.0, 0.1);
-  EXPECT_NEAR(moon.angular_radius_rad, 0.272481 * 6378137.0 / moon.distance_m, 3e-6)
+  EXPECT_NEAR(moon.phase_angle_deg, 69.0756, 0.01);
+  EXPECT_NEAR(moon.illuminated_fraction, 0.6786, 2e-4);
+  EXPECT_NEAR(BrightLimb_rad(moon, kGeocentre) / kRadiansPerDegree, 285.0, 0.1);
+  EXPECT_NEAR(moon.angular_radius_rad(), 0.272481 * 6378137.0 / moon.distance_m, 3e-6)
       << "Meeus' radius, in equatorial radii of the earth, is that of the mountains: 0.03 % more";
 }
 
 // Almanacs give the phases to the minute.
 TEST(Moon, IsFullAndNewWhenAlmanacsSay) {
   // The total lunar eclipse of 2000 January 21 is greatest at 4:43:28 UT (Espenak, NASA).
-  const MoonPosition eclipsed = MoonAt(kGeocentre, ParseInstant("2000-01-21T04:43:28Z"));
-  EXPECT_LT(eclipsed.phase_angle_rad, 0.5 * kRadiansPerDegree) << "gamma 0.2957 earth radii";
-  EXPECT_GT(eclipsed.IlluminatedFraction(), 0.9999);
+  const MoonPosition eclipsed = TrueMoonAt(kGeocentre, ParseInstant("2000-01-21T04:43:28Z"));
+  EXPECT_LT(eclipsed.phase_angle_deg, 0.5) << "gamma 0.2957 earth radii";
+  EXPECT_GT(eclipsed.illuminated_fraction, 0.9999);
   // The total solar eclipse of 1999 August 11 is greatest at 11:03:04 UT at 45.1 N 24.3 E
   // (Espenak).
   const Place place{45.0667, 24.2833, 0.0};
   const UtcTime instant = ParseInstant("1999-08-11T11:03:04Z");
-  const MoonPosition moon = MoonAt(place, instant);
-  const SunPosition sun = SunAt(place, instant);
-  EXPECT_LT(glm::length(moon.direction.xyz - sun.direction.xyz), 25.0 * kArcsecond)
+  const MoonPosition moon = TrueMoonAt(place, instant);
+  const SunInSky sun = TrueSunAt(place, instant);
+  EXPECT_LT(AngleBetween(EcefTowards(moon, place).xyz, EcefTowards(sun, place).xyz),
+            25.0 * kArcsecond)
       << "the axis of the shadow passes there within the error of the ephemeris";
-  EXPECT_NEAR(moon.angular_radius_rad / sun.angular_radius_rad, 1.0286, 0.004)
+  EXPECT_NEAR(moon.angular_radius_rad() / sun.angular_radius_rad(), 1.0286, 0.004)
       << "the published magnitude";
 }
 
 TEST(Moon, StandsLowerOverTheHorizonThanFromTheCentreOfTheEarth) {
   const UtcTime instant = ParseInstant("2026-06-21T20:00:00Z");
-  const MoonPosition centre = MoonAt(kGeocentre, instant);
+  const MoonPosition centre = TrueMoonAt(kGeocentre, instant);
   // One place has the moon in the geocentric zenith, the other is a quarter of the earth away.
-  const double longitude = std::atan2(centre.direction.xyz.y, centre.direction.xyz.x);
+  const glm::dvec3 towards = EcefTowards(centre, kGeocentre).xyz;
+  const double longitude = std::atan2(towards.y, towards.x);
   const MoonPosition under =
-      MoonAt(PlaceFromRadians(std::asin(centre.direction.xyz.z), longitude, 0.0), instant);
+      TrueMoonAt(PlaceFromRadians(std::asin(towards.z), longitude, 0.0), instant);
   EXPECT_NEAR(centre.distance_m - under.distance_m, 6371e3, 20e3) << "nearer by the earth's radius";
   const Place aside = PlaceFromRadians(0.0, longitude + 0.5 * kPi, 0.0);
-  const MoonPosition low = MoonAt(aside, instant);
+  const MoonPosition low = TrueMoonAt(aside, instant);
   const double parallax = 6378137.0 / centre.distance_m;
-  EXPECT_NEAR(low.elevation_rad, std::asin(-std::sin(parallax)), 30.0 * kArcsecond)
+  EXPECT_NEAR(low.elevation_rad(), std::asin(-std::sin(parallax)), 30.0 * kArcsecond)
       << "the horizontal parallax, about a degree";
 }
 
 TEST(Moon, RefractionLiftsItAsItLiftsTheSun) {
   const Place place{46.5, 8.0, 500.0};
   const UtcTime instant = ParseInstant("2026-06-21T20:00:00Z");
-  const MoonPosition bare = MoonAt(place, instant),
+  const MoonPosition bare = TrueMoonAt(place, instant),
                      seen = ApparentMoonAt(place, instant, AlmanacAir());
-  EXPECT_EQ(seen.elevation_rad,
-            bare.elevation_rad + RefractionFromHeight(AlmanacAir(), bare.elevation_rad, 500.0));
-  EXPECT_EQ(seen.azimuth_rad, bare.azimuth_rad);
+  EXPECT_EQ(seen.elevation_deg,
+            bare.elevation_deg + RefractionFromHeight(AlmanacAir(), bare.elevation_rad(), 500.0) /
+                                     kRadiansPerDegree);
+  EXPECT_EQ(seen.azimuth_deg, bare.azimuth_deg);
 }
 
 TEST(Moon, ItsBrightLimbPointsToTheSun) {
   const Place place{46.5, 8.0, 0.0};
   for (const char* utc : {"2026-06-18T19:00:00Z", "2026-06-25T19:00:00Z", "2026-07-07T04:00:00Z"}) {
     const UtcTime instant = ParseInstant(utc);
-    const MoonPosition moon = MoonAt(place, instant);
-    const glm::dvec3 sun = SunAt(place, instant).direction.xyz;
-    const glm::dvec3 at = moon.direction.xyz;
+    const MoonPosition moon = TrueMoonAt(place, instant);
+    const glm::dvec3 sun = EcefTowards(TrueSunAt(place, instant), place).xyz;
+    const glm::dvec3 at = EcefTowards(moon, place).xyz;
     const glm::dvec3 east = glm::normalize(glm::cross(glm::dvec3(0.0, 0.0, 1.0), at));
     const glm::dvec3 north = glm::cross(at, east);
-    const glm::dvec3 limb =
-        std::cos(BrightLimb_rad(moon)) * north + std::sin(BrightLimb_rad(moon)) * east;
+    const double limb_rad = BrightLimb_rad(moon, place);
+    const glm::dvec3 limb = std::cos(limb_rad) * north + std::sin(limb_rad) * east;
     const glm::dvec3 across = glm::normalize(glm::cross(at, sun));
     EXPECT_NEAR(glm::dot(limb, across), 0.0, 1e-4) << utc;
     EXPECT_GT(glm::dot(limb, sun), 0.0) << utc;
@@ -123,8 +129,8 @@ TEST(Moon, RisesAndSetsWhereItsUpperLimbMeetsTheHorizon) {
   for (int day = 0; day < 5; ++day) {
     const UtcTime rise = NextMoonrise(place, instant).value();
     EXPECT_GT(SecondsBetween(instant, rise), 0.0);
-    const MoonPosition moon = MoonAt(place, rise);
-    EXPECT_NEAR(moon.elevation_rad + moon.angular_radius_rad, horizon, 1e-5) << "0.1 s";
+    const MoonPosition moon = TrueMoonAt(place, rise);
+    EXPECT_NEAR(moon.elevation_rad() + moon.angular_radius_rad(), horizon, 1e-5) << "0.1 s";
     instant = NextMoonset(place, rise).value();
     EXPECT_GT(SecondsBetween(rise, instant), 6.0 * 3600.0);
     gap_s += SecondsBetween(rise, NextMoonrise(place, AddSeconds(rise, 1.0)).value()) / 5.0;
@@ -217,8 +223,8 @@ TEST(MoonOrbit, ADayAndItsPartAreOneTime) {
 
 MoonPosition PositionAtPhase(double phase_angle_rad, double sun_distance_au = 1.0) {
   MoonPosition moon{};
-  moon.angular_radius_rad = 0.0045;
-  moon.phase_angle_rad = phase_angle_rad;
+  moon.angular_radius_deg = 0.0045 / kRadiansPerDegree;
+  moon.phase_angle_deg = phase_angle_rad / kRadiansPerDegree;
   moon.sun_distance_au = sun_distance_au;
   moon.distance_m = 384.4e6;
   return moon;
@@ -226,7 +232,7 @@ MoonPosition PositionAtPhase(double phase_angle_rad, double sun_distance_au = 1.
 
 /// Returns the disk of a moon in the east.
 MoonDisk DiskOf(const MoonPosition& moon) {
-  const double a = moon.phase_angle_rad;
+  const double a = moon.phase_angle_rad();
   return MoonDiskOf(moon, Unrefracted({1.0, 0.0, 0.0}), {-std::cos(a), 0.0, std::sin(a)}, 1.0);
 }
 

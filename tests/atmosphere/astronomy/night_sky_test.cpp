@@ -123,15 +123,17 @@ TEST(Planets, StandOnTheEclipticAsBrightAsAlmanacsSay) {
   const Place place = PlaceFromRadians(0.8, 0.0, 0.0);
   // Jupiter is in opposition on 2026 January 10 in Gemini, V = -2.7; Saturn has V = 1.2 in Pisces.
   const auto planets = PlanetsAt(place, ParseInstant("2026-01-10T00:00:00Z"));
-  const SunPosition sun = SunAt(place, ParseInstant("2026-01-10T00:00:00Z"));
-  EXPECT_NEAR(AngleBetween(planets[3].direction, sun.direction), 180.0, 1.0);
+  const Vector<Ecef> to_sun =
+      EcefTowards(TrueSunAt(place, ParseInstant("2026-01-10T00:00:00Z")), place);
+  EXPECT_NEAR(AngleBetween(planets[3].direction, to_sun), 180.0, 1.0);
   EXPECT_NEAR(planets[3].magnitude, -2.7, 0.15);
   EXPECT_NEAR(planets[4].magnitude, 1.1, 0.3);
-  EXPECT_LT(AngleBetween(planets[1].direction, sun.direction), 3.0) << "Venus behind the sun";
+  EXPECT_LT(AngleBetween(planets[1].direction, to_sun), 3.0) << "Venus behind the sun";
   // The greatest elongation east, on 2026 August 15, is 45.9 degrees.
   const auto evening = PlanetsAt(place, ParseInstant("2026-08-15T06:00:00Z"));
-  const SunPosition late = SunAt(place, ParseInstant("2026-08-15T06:00:00Z"));
-  EXPECT_NEAR(AngleBetween(evening[1].direction, late.direction), 45.9, 0.2);
+  const Vector<Ecef> to_late =
+      EcefTowards(TrueSunAt(place, ParseInstant("2026-08-15T06:00:00Z")), place);
+  EXPECT_NEAR(AngleBetween(evening[1].direction, to_late), 45.9, 0.2);
   EXPECT_NEAR(evening[1].magnitude, -4.3, 0.2);
 }
 

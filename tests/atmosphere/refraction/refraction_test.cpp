@@ -290,11 +290,12 @@ TEST(ApparentSun, IsHigherThanTheSunByRefractionAtTheEye) {
   const UtcTime evening = ParseInstant("2026-06-21T18:50:00Z");
   for (const double height_m : {0.0, 10e3}) {
     const Place eye = CheckedPlace({47.0, 8.0, height_m});
-    const SunPosition sun = SunAt(eye, evening), apparent = ApparentSunAt(eye, evening);
-    EXPECT_EQ(apparent.elevation_rad,
-              sun.elevation_rad + AlmanacRefraction(sun.elevation_rad, height_m));
-    EXPECT_GT(apparent.elevation_rad, sun.elevation_rad);
-    EXPECT_EQ(apparent.azimuth_rad, sun.azimuth_rad);
+    const SunInSky sun = TrueSunAt(eye, evening), apparent = ApparentSunAt(eye, evening);
+    EXPECT_EQ(
+        apparent.elevation_deg,
+        sun.elevation_deg + AlmanacRefraction(sun.elevation_rad(), height_m) / kRadiansPerDegree);
+    EXPECT_GT(apparent.elevation_deg, sun.elevation_deg);
+    EXPECT_EQ(apparent.azimuth_deg, sun.azimuth_deg);
   }
 }
 
@@ -303,8 +304,7 @@ constexpr std::array kViews{std::array{90.0, 0.0}, std::array{45.0, 0.0}, std::a
                             std::array{5.0, 0.0}, std::array{20.0, 90.0}};
 
 glm::dvec3 Towards(double elevation_deg, double azimuth_deg) {
-  return DirectionFromAngles(elevation_deg * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree)
-      .xyz;
+  return EnuFromAngles(elevation_deg * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree).xyz;
 }
 
 using Bands = std::array<double, 3>;
@@ -413,15 +413,15 @@ TEST(SunForAir, IsRaisedByTheLiftForAirAtAnyHeight) {
     for (const char* time :
          {"2026-06-21T11:00:00Z", "2026-06-21T19:22:00Z", "2026-06-21T20:20:00Z"}) {
       const UtcTime now = ParseInstant(time);
-      const SunPosition truly = SunAt(eye, now), seen = ApparentSunAt(eye, now);
-      EXPECT_NEAR(SunForAir(seen).elevation_rad,
-                  truly.elevation_rad + LiftForAir(AlmanacAir(), truly.elevation_rad), 1e-12)
+      const SunInSky truly = TrueSunAt(eye, now), seen = ApparentSunAt(eye, now);
+      EXPECT_NEAR(SunForAir(seen).elevation_rad(),
+                  truly.elevation_rad() + LiftForAir(AlmanacAir(), truly.elevation_rad()), 1e-12)
           << time << " " << height_m;
-      EXPECT_EQ(SunForAir(seen).azimuth_rad, seen.azimuth_rad);
-      EXPECT_EQ(SunForAir(truly).elevation_rad, truly.elevation_rad) << "nothing has lifted it";
-      const MoonPosition moon = ApparentMoonAt(eye, now, AlmanacAir()), bare = MoonAt(eye, now);
-      EXPECT_NEAR(moon.elevation_rad - moon.lower_for_air_rad,
-                  bare.elevation_rad + LiftForAir(AlmanacAir(), bare.elevation_rad), 1e-12);
+      EXPECT_EQ(SunForAir(seen).azimuth_rad(), seen.azimuth_rad());
+      EXPECT_EQ(SunForAir(truly).elevation_rad(), truly.elevation_rad()) << "nothing has lifted it";
+      const MoonPosition moon = ApparentMoonAt(eye, now, AlmanacAir()), bare = TrueMoonAt(eye, now);
+      EXPECT_NEAR(moon.elevation_rad() - moon.lower_for_air_deg * kRadiansPerDegree,
+                  bare.elevation_rad() + LiftForAir(AlmanacAir(), bare.elevation_rad()), 1e-12);
     }
   }
 }

@@ -62,8 +62,7 @@ TEST(Panorama, IsThatOfTheLayerBelow) {
   settings.width = 32;
   settings.height = 16;
   settings.orientation = lut::PanoramaOrientation::kUnity;
-  settings.sun = {45.0 * atmosphere::kRadiansPerDegree, 180.0 * atmosphere::kRadiansPerDegree, 1.0,
-                  0.2666 * atmosphere::kRadiansPerDegree, 0.01 * atmosphere::kRadiansPerDegree};
+  settings.sun = options.sun;
   const auto& air = sky.state().lookup.single_scattering();
   const auto& light = sky.state().lookup.multiple_scattering();
   const HdrImage panorama = RenderPanorama(sky, options);

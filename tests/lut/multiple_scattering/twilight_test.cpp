@@ -70,8 +70,8 @@ class Daylight {
   explicit Daylight(const Medium& medium) : air_(medium), multiple_scattering_(medium) {}
 
   [[nodiscard]] double Lux(double true_elevation_rad) const {
-    PanoramaSun sun;
-    sun.elevation_rad = true_elevation_rad;
+    SunInSky sun;
+    sun.elevation_deg = true_elevation_rad / kRadiansPerDegree;
     return HorizontalIlluminance(air_, multiple_scattering_, 0.0, sun) + kNightSky_lux;
   }
 

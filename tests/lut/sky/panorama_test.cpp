@@ -34,8 +34,8 @@ PanoramaSettings SunAtDegrees(double elevation, double azimuth) {
   PanoramaSettings settings;
   settings.width = 256;
   settings.height = 128;
-  settings.sun.elevation_rad = elevation * kRadiansPerDegree;
-  settings.sun.azimuth_rad = azimuth * kRadiansPerDegree;
+  settings.sun.elevation_deg = elevation;
+  settings.sun.azimuth_deg = azimuth;
   return settings;
 }
 
@@ -76,7 +76,7 @@ double LookedUpAt(PanoramaOrientation orientation, double x, double y, double z)
 // Returns the column of a direction in the axes of a program. East is +x everywhere.
 double ColumnOf(PanoramaOrientation orientation, double elevation_rad, double azimuth_rad,
                 int width) {
-  const auto enu = DirectionFromAngles(elevation_rad, azimuth_rad).xyz;
+  const auto enu = EnuFromAngles(elevation_rad, azimuth_rad).xyz;
   const double east = enu.x, north = enu.y, up = enu.z;
   double u = 0.0;
   switch (orientation) {
@@ -107,8 +107,8 @@ TEST_P(Orientation, TheProgramFindsTheSunAndNotInAMirror) {
     settings.orientation = GetParam();
     settings.sun_disk = true;
     Image image = Panorama(settings);
-    const double column =
-        ColumnOf(GetParam(), settings.sun.elevation_rad, settings.sun.azimuth_rad, settings.width);
+    const double column = ColumnOf(GetParam(), settings.sun.elevation_rad(),
+                                   settings.sun.azimuth_rad(), settings.width);
     const double row = (90.0 - 35.0) / 180.0 * settings.height;
     EXPECT_TRUE(ShowsTheSunAt(image, column, row)) << NameOf(GetParam()) << " " << azimuth_deg;
     for (int y = 0; y < image.height; ++y) {
@@ -177,7 +177,7 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
       PanoramaSettings settings = SunAtDegrees(elevation_deg, 10.0);
       settings.altitude_m = altitude_m;
       const Image image = Panorama(settings);
-      const double mu_s = std::sin(settings.sun.elevation_rad);
+      const double mu_s = std::sin(settings.sun.elevation_rad());
       double brightest = 0.0;
       for (const auto& pixel : image.rgb) brightest = std::max(brightest, Luminance(pixel));
       double squares = 0.0;
@@ -187,7 +187,7 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
         const int y = static_cast<int>(Halton(i, 3) * settings.height);
         const double zenith = kPi * (y + 0.5) / settings.height;
         const double from_sun =
-            2.0 * kPi * ((x + 0.5) / settings.width - 0.5) - settings.sun.azimuth_rad;
+            2.0 * kPi * ((x + 0.5) / settings.width - 0.5) - settings.sun.azimuth_rad();
         const double exact =
             LuminanceOf(direct.Radiance(SkyRay(altitude_m, zenith, mu_s, from_sun)));
         const double error =

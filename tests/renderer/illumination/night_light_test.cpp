@@ -40,10 +40,10 @@ std::size_t NearestBand(const Medium& medium, double wavelength_nm) {
 
 MoonPosition MoonAtPhase(double degrees) {
   MoonPosition moon{};
-  moon.angular_radius_rad = 0.004521;  // at its mean distance
+  moon.angular_radius_deg = 0.004521 / kRadiansPerDegree;  // at its mean distance
   moon.distance_m = 384.4e6;
   moon.sun_distance_au = 1.0;
-  moon.phase_angle_rad = degrees * kRadiansPerDegree;
+  moon.phase_angle_deg = degrees;
   return moon;
 }
 

@@ -27,7 +27,7 @@ namespace {
 using tests::ThreeBandAir;
 
 glm::dvec3 SunAtElevation(double degrees) {
-  return DirectionFromAngles(degrees * kRadiansPerDegree, 200.0 * kRadiansPerDegree).xyz;
+  return EnuFromAngles(degrees * kRadiansPerDegree, 200.0 * kRadiansPerDegree).xyz;
 }
 
 const glm::dvec3 kUp(0.0, 0.0, 1.0);

@@ -98,7 +98,7 @@ struct NightStage {
   SceneGeometry geometry{ground, scene.medium, false};
   const SolvedAir& air = tests::ThreeBandAir();
   Lighting light = [this] {
-    SunPosition sun;
+    SunInSky sun;
     sun.distance_au = 1.0;
     Lighting at =
         LightingOf(sun, UtcTime{60000, 0.0}, PlaceFromRadians(0.8, 0.0, 0.0), scene.medium);

@@ -47,7 +47,7 @@ struct MediaStage {
   BandColour colour{medium.wavelengths_nm};
   SceneGeometry geometry{ground, medium, false};
   Lighting light = [this] {
-    SunPosition sun;
+    SunInSky sun;
     sun.distance_au = 1.0;
     Lighting at = LightingOf(sun, UtcTime{60000, 0.0}, PlaceFromRadians(0.8, 0.0, 0.0), medium);
     at.source.direction = Unrefracted(kToSun);

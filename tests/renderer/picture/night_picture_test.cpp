@@ -108,9 +108,8 @@ TEST(NightPicture, TrailsHaveTheLuxOfTheirStarAndTheirLength) {
 }
 
 TEST(NightPicture, TheMoonDrawsATrailOfItsLight) {
-  const MoonPosition moon = MoonAt(Place{46.5, 8.0, 2.0}, kFullMoon);
-  Scene scene = QuickScene(2.0, moon.azimuth_rad / kRadiansPerDegree,
-                           moon.elevation_rad / kRadiansPerDegree, 8.0);
+  const MoonPosition moon = TrueMoonAt(Place{46.5, 8.0, 2.0}, kFullMoon);
+  Scene scene = QuickScene(2.0, moon.azimuth_deg, moon.elevation_deg, 8.0);
   const RenderSettings settings = Small(64, 64);
   const double pixel_rad = 2.0 * std::tan(4.0 * kRadiansPerDegree) / 64;
   const Image still = SceneRenderer(scene).Render(kFullMoon, settings);
@@ -254,12 +253,12 @@ TEST(MoonPicture, TheFullMoonHasItsPlaceAndBrightness) {
   // The moon is full on 2026 June 29 at 23:57 UT.
   const UtcTime instant = ParseInstant("2026-06-29T23:30:00Z");
   const MoonPosition moon = MoonOver(instant);
-  ASSERT_GT(moon.elevation_rad, 10.0 * kRadiansPerDegree);
-  const Bright bright = BrightOf(NightAround(moon.azimuth_rad, moon.elevation_rad, instant));
+  ASSERT_GT(moon.elevation_rad(), 10.0 * kRadiansPerDegree);
+  const Bright bright = BrightOf(NightAround(moon.azimuth_rad(), moon.elevation_rad(), instant));
   EXPECT_NEAR(bright.x, 32.0, 0.5) << "pixels of a thirty-second of a degree";
   EXPECT_NEAR(bright.y, 32.0, 0.5);
   const double radius_pixels =
-      std::tan(moon.angular_radius_rad) / std::tan(kRadiansPerDegree) * 32.0;
+      std::tan(moon.angular_radius_rad()) / std::tan(kRadiansPerDegree) * 32.0;
   EXPECT_NEAR(bright.count, kPi * radius_pixels * radius_pixels, 12.0);
   EXPECT_GT(bright.luminance, 1000.0) << "cd/m^2, through two to four masses of air";
   EXPECT_LT(bright.luminance, 5100.0);
@@ -269,8 +268,8 @@ TEST(MoonPicture, TheHalfMoonOfAnEveningIsLitOnItsRight) {
   // The first quarter is on 2026 June 21 at 21:55 UT.
   const UtcTime instant = ParseInstant("2026-06-21T20:30:00Z");
   const MoonPosition moon = MoonOver(instant);
-  ASSERT_GT(moon.elevation_rad, 5.0 * kRadiansPerDegree);
-  const Bright bright = BrightOf(NightAround(moon.azimuth_rad, moon.elevation_rad, instant));
+  ASSERT_GT(moon.elevation_rad(), 5.0 * kRadiansPerDegree);
+  const Bright bright = BrightOf(NightAround(moon.azimuth_rad(), moon.elevation_rad(), instant));
   EXPECT_GT(bright.x, 33.0) << "towards the sun that has set";
   EXPECT_GT(bright.y, 32.5) << "and below";
 }
@@ -323,8 +322,8 @@ double Left(const UtcTime& instant, double wavelength_nm) {
 
 /// Returns the view of a camera at Burgos that looks at the sun.
 CameraPose TowardsSun(const UtcTime& instant, double fov) {
-  const SunPosition sun = ApparentSunAt(Burgos(), instant);
-  return Towards(sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree, fov);
+  const SunInSky sun = ApparentSunAt(Burgos(), instant);
+  return Towards(sun.azimuth_deg, sun.elevation_deg, fov);
 }
 
 // Nine tenths of the sun are covered. Higher orders of scattering and the ground are included.
@@ -356,7 +355,7 @@ TEST(EclipsePicture, LightOfTheCrescentIsThatOfTheUncoveredSun) {
 TEST(EclipsePicture, TheCrescentFacesAwayFromTheMoon) {
   for (const char* utc : {"2026-08-12T17:50:00Z", "2026-08-12T18:10:00Z", "2026-08-12T18:40:00Z"}) {
     const UtcTime instant = ParseInstant(utc);
-    const SunPosition sun = ApparentSunAt(Burgos(), instant);
+    const SunInSky sun = ApparentSunAt(Burgos(), instant);
     const MoonPosition moon = ApparentMoonAt(Burgos(), instant, AlmanacAir());
     const Image image = EclipseRendered(TowardsSun(instant, 0.7), instant, 64, 4);
     double x = 0.0, y = 0.0;
@@ -367,8 +366,8 @@ TEST(EclipsePicture, TheCrescentFacesAwayFromTheMoon) {
         y += light * (32.0 - row - 0.5);
       }
     }
-    const double right = (moon.azimuth_rad - sun.azimuth_rad) * std::cos(sun.elevation_rad);
-    const double up = moon.elevation_rad - sun.elevation_rad;
+    const double right = (moon.azimuth_rad() - sun.azimuth_rad()) * std::cos(sun.elevation_rad());
+    const double up = moon.elevation_rad() - sun.elevation_rad();
     const double cosine = (x * right + y * up) / (std::hypot(x, y) * std::hypot(right, up));
     EXPECT_LT(cosine, -0.995) << utc << ": within 6 degrees of opposite";
   }
@@ -377,8 +376,8 @@ TEST(EclipsePicture, TheCrescentFacesAwayFromTheMoon) {
 TEST(EclipsePicture, TotalityIsDarkAndFinite) {
   const UtcTime middle = ParseInstant("2026-08-12T18:29:40Z");
   ASSERT_EQ(Left(middle, 550.0), 0.0);
-  const SunPosition sun = ApparentSunAt(Burgos(), middle);
-  const CameraPose pose = Towards(sun.azimuth_rad / kRadiansPerDegree, 20.0, 60.0);
+  const SunInSky sun = ApparentSunAt(Burgos(), middle);
+  const CameraPose pose = Towards(sun.azimuth_deg, 20.0, 60.0);
   const Image dark = EclipseRendered(pose, middle, 32, 2);
   for (const auto& pixel : dark.rgb) {
     for (const float value : pixel) {

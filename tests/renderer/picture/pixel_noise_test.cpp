@@ -185,9 +185,9 @@ TEST_F(NoisyPicture, HasTheSkyOfAllItsRays) {
 
 TEST_F(NoisyPicture, TheSunsLimbCoversPartsOfPixels) {
   Scene scene = QuickScene(1000.0, 0.0, 0.0, 3.0);
-  const SunPosition sun = tests::SunSeenIn(scene, kEvening);
-  scene.camera = CameraFromDegrees({1000.0, false}, sun.azimuth_rad / kRadiansPerDegree + 0.1,
-                                   sun.elevation_rad / kRadiansPerDegree, 0.0, 3.0);
+  const SunInSky sun = tests::SunSeenIn(scene, kEvening);
+  scene.camera =
+      CameraFromDegrees({1000.0, false}, sun.azimuth_deg + 0.1, sun.elevation_deg, 0.0, 3.0);
   const SceneRenderer renderer(scene);
   const Image truth = renderer.Render(kEvening, Small(tests::ScaledDown(1024, 512)));
   double brightest = 0.0;

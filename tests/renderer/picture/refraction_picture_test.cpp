@@ -53,12 +53,12 @@ TEST(RefractedPlaces, TheSunIsWhereTheRayEquationSays) {
       const UtcTime instant = AddSeconds(ParseInstant("2026-06-21T18:26:00Z"), 60.0 * minutes);
       CameraSample camera_sample(instant);
       camera_sample.poses = {{eye, 0.0, 0.0, 0.0, 1.0}};
-      const double apparent = renderer.ApparentSun(camera_sample).elevation_rad;
+      const double apparent = renderer.ApparentSun(camera_sample).elevation_rad();
       if (apparent < RefractedView(renderer.medium(), height_m).horizon_rad() + kArcminute)
         continue;
       ++seen;
       EXPECT_NEAR(TrueElevation(renderer.medium(), apparent, height_m),
-                  SunAt(eye, instant).elevation_rad, kTolerance)
+                  TrueSunAt(eye, instant).elevation_rad(), kTolerance)
           << height_m << " m, " << apparent / kRadiansPerDegree << " degrees";
     }
     EXPECT_GT(seen, 5);
@@ -96,10 +96,11 @@ TEST(RefractedPlaces, OnMarsAlmostNothingIsLifted) {
   Scene scene = QuickScene(2.0, 0.0, 0.0, 60.0);
   scene.medium = MediumPreset("mars");
   const UtcTime evening = ParseInstant("2026-06-21T19:15:00Z");
-  const SunPosition sun = tests::SunSeenIn(scene, evening);
-  EXPECT_NEAR(sun.elevation_rad, SunAt(Place{46.5, 8.0, 2.0}, evening).elevation_rad,
+  const SunInSky sun = tests::SunSeenIn(scene, evening);
+  EXPECT_NEAR(sun.elevation_rad(), TrueSunAt(Place{46.5, 8.0, 2.0}, evening).elevation_rad(),
               1.0 * kArcminute);
-  EXPECT_LT(sun.lower_for_air_rad, 1.0 * kArcminute) << "its light comes from where it is seen";
+  EXPECT_LT(sun.lower_for_air_deg * kRadiansPerDegree, 1.0 * kArcminute)
+      << "its light comes from where it is seen";
 }
 
 /// Returns the area of a disk in a picture relative to that of a circle as wide as the disk. Pixels
@@ -150,11 +151,10 @@ TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationSays) {
       AddSeconds(*NextMoonrise(eye, ParseInstant("2026-06-29T12:00:00Z")), 360.0);  // full
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), 46.5 * kRadiansPerDegree);
   const MoonPosition moon = ApparentMoonAt(eye, instant, GentleAirOf(medium));
-  const SceneRenderer renderer(QuickScene(20.0, moon.azimuth_rad / kRadiansPerDegree,
-                                          moon.elevation_rad / kRadiansPerDegree, 1.2));
+  const SceneRenderer renderer(QuickScene(20.0, moon.azimuth_deg, moon.elevation_deg, 1.2));
   const auto truly = [&](double apparent) { return TrueElevation(medium, apparent, 20.0); };
-  const double upper = moon.elevation_rad + 0.85 * moon.angular_radius_rad;
-  const double lower = moon.elevation_rad - 0.85 * moon.angular_radius_rad;
+  const double upper = moon.elevation_rad() + 0.85 * moon.angular_radius_rad();
+  const double lower = moon.elevation_rad() - 0.85 * moon.angular_radius_rad();
   ASSERT_GT(lower, 0.0);
   ExpectFlat(
       [&](EffectSet effects) {
@@ -170,12 +170,11 @@ TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationSays) {
 TEST(RefractedPlaces, TheDiskOfASettingSunIsFlat) {
   const UtcTime evening = ParseInstant("2026-06-21T19:20:30Z");
   Scene scene = QuickScene(20.0, 0.0, 0.0, 1.2);
-  const SunPosition sun = tests::SunSeenIn(scene, evening);
-  scene.camera =
-      CameraFromDegrees({20.0, false}, sun.azimuth_rad / kRadiansPerDegree, 0.3, 0.0, 1.2);
+  const SunInSky sun = tests::SunSeenIn(scene, evening);
+  scene.camera = CameraFromDegrees({20.0, false}, sun.azimuth_deg, 0.3, 0.0, 1.2);
   const SceneRenderer renderer(scene);
   const RefractedView view(renderer.medium(), 20.0);
-  const double middle = view.TrueElevation(sun.elevation_rad), radius = sun.angular_radius_rad;
+  const double middle = view.TrueElevation(sun.elevation_rad()), radius = sun.angular_radius_rad();
   ExpectFlat(
       [&](EffectSet effects) {
         return AreaOfCircle(renderer.Render(evening, DiskSettings(effects)), 72, 0.1);
@@ -363,10 +362,10 @@ TEST(RefractedAir, BeforeTheSeaIsTheSameAtEveryFieldOfView) {
 TEST(TwilightAir, TheAureoleSurroundsTheVisibleDisk) {
   constexpr double kFov_deg = 5.0;
   const UtcTime evening = ParseInstant("2026-06-21T19:12:00Z");
-  const SunPosition sun = tests::SunSeenIn(QuickScene(20.0, 0.0, 0.0, kFov_deg), evening);
-  EXPECT_GT(sun.lower_for_air_rad, 15.0 * kArcminute) << "another sun lights the air";
-  const SceneRenderer renderer(QuickScene(20.0, sun.azimuth_rad / kRadiansPerDegree,
-                                          sun.elevation_rad / kRadiansPerDegree, kFov_deg));
+  const SunInSky sun = tests::SunSeenIn(QuickScene(20.0, 0.0, 0.0, kFov_deg), evening);
+  EXPECT_GT(sun.lower_for_air_deg * kRadiansPerDegree, 15.0 * kArcminute)
+      << "another sun lights the air";
+  const SceneRenderer renderer(QuickScene(20.0, sun.azimuth_deg, sun.elevation_deg, kFov_deg));
   RenderSettings settings{.width = 81,
                           .height = 81,
                           .samples_per_pixel = 4,
@@ -416,15 +415,15 @@ TEST(LowSun, LightsLevelGroundByItsRefractedBeam) {
   for (const char* time :
        {"2026-06-21T18:30:00Z", "2026-06-21T19:00:00Z", "2026-06-21T19:12:00Z"}) {
     const UtcTime evening = ParseInstant(time);
-    const SunPosition sun = renderer.ApparentSun(evening);
-    std::vector<double> sent = rays.Beam(sun.elevation_rad, 0.0);
+    const SunInSky sun = renderer.ApparentSun(evening);
+    std::vector<double> sent = rays.Beam(sun.elevation_rad(), 0.0);
     for (std::size_t band = 0; band < sent.size(); ++band)
       sent[band] *= medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au) *
-                    std::sin(sun.elevation_rad) * medium.ground_albedo[band] / kPi;
+                    std::sin(sun.elevation_rad()) * medium.ground_albedo[band] / kPi;
     EXPECT_NEAR(tests::Luminance(renderer.Render(evening, settings).at(0, 0)) / colour.Xyz(sent)[1],
                 1.0, 0.03)
         << "RefractedBeam is within 2 %; 16 places of the disk stand for it; at "
-        << sun.elevation_rad / kRadiansPerDegree << " degrees";
+        << sun.elevation_deg << " degrees";
   }
 }
 

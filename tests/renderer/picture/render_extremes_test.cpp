@@ -177,16 +177,15 @@ Scene WithoutAir(double height_m, double heading, double pitch, double fov) {
 
 // Hard cases 28, 32.
 TEST(RenderExtremes, WithoutAirTheSunsDiskStandsInABlackSky) {
-  const SunPosition sun = tests::SunSeenIn(WithoutAir(2.0, 0.0, 0.0, 2.0), kExtremeNoon);
-  const Scene scene = WithoutAir(2.0, sun.azimuth_rad / kRadiansPerDegree,
-                                 sun.elevation_rad / kRadiansPerDegree, 2.0);
+  const SunInSky sun = tests::SunSeenIn(WithoutAir(2.0, 0.0, 0.0, 2.0), kExtremeNoon);
+  const Scene scene = WithoutAir(2.0, sun.azimuth_deg, sun.elevation_deg, 2.0);
   const SceneRenderer renderer(scene);
   constexpr int kSide = 200;
   const Image image = renderer.Render(
       kExtremeNoon,
       Settings(kSide, kSide, {PictureLayer::kTransmittance, PictureLayer::kInscatter}));
   const CameraRays camera(scene.camera, kSide, kSide);
-  const glm::dvec3 to_sun = DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
+  const glm::dvec3 to_sun = EnuFromAngles(sun.elevation_rad(), sun.azimuth_rad()).xyz;
   const double radius = 0.5 * 0.5334 * kRadiansPerDegree / sun.distance_au;
   double illuminance = 0.0, brightest = 0.0;
   for (int y = 0; y < kSide; ++y) {
@@ -227,10 +226,10 @@ TEST(RenderExtremes, WithoutAirGroundIsSunlitAndNightsAreBlack) {
   const Image night =
       renderer.Render(ParseInstant("2026-06-21T23:30:00Z"), InSunlightAlone(Settings(8, 8)));
   for (const auto& rgb : night.rgb) EXPECT_EQ(rgb, (std::array<float, 3>{}));
-  const SunPosition sun = renderer.ApparentSun(kExtremeNoon);
+  const SunInSky sun = renderer.ApparentSun(kExtremeNoon);
   const double lux =
       BandColour(renderer.medium().wavelengths_nm).Xyz(renderer.medium().solar_irradiance)[1] *
-      std::sin(sun.elevation_rad) / (sun.distance_au * sun.distance_au);
+      std::sin(sun.elevation_rad()) / (sun.distance_au * sun.distance_au);
   EXPECT_NEAR(renderer.Illuminance(kExtremeNoon) / lux, 1.0, 1e-4);
 }
 

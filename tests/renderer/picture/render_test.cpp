@@ -45,13 +45,13 @@ TEST(Render, SkyPixelsAreReferenceSingleScatteringPlusTheRest) {
   const SceneRenderer renderer(QuickScene(1000.0, 180.0, 20.0, 40.0));
   const UtcTime noon = ParseInstant("2026-06-21T10:00:00Z");
   const Image image = renderer.Render(noon, kSmall);
-  const SunPosition sun = renderer.ApparentSun(noon);
+  const SunInSky sun = renderer.ApparentSun(noon);
   const Medium& medium = renderer.medium();
   const MultipleScattering multiple_scattering(medium);
   const SingleScattering<float> air(medium);
   const BandColour colour(medium.wavelengths_nm);
   const CameraRays camera(CameraFromDegrees({1000.0, false}, 180.0, 20.0, 0.0, 40.0), 16, 9);
-  const glm::dvec3 to_sun = DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
+  const glm::dvec3 to_sun = EnuFromAngles(sun.elevation_rad(), sun.azimuth_rad()).xyz;
   for (const int x : {0, 8, 15}) {
     const glm::dvec3 d = camera.Direction(x + 0.5, 4.5);
     const ViewRay ray{1000.0, d.z, to_sun.z, d.x * to_sun.x + d.y * to_sun.y + d.z * to_sun.z};
@@ -177,9 +177,9 @@ TEST(Render, ImpossibleEyesLayersAndSizesAreRefused) {
 }
 
 /// Returns the illuminance of a surface 2 m up that faces the sun, without the sky [lx].
-double SunIlluminance(const SceneRenderer& renderer, const SunPosition& sun) {
+double SunIlluminance(const SceneRenderer& renderer, const SunInSky& sun) {
   const SingleScattering<float> air(renderer.medium());
-  const auto transmittance = air.TransmittanceToSpace(2.0, std::sin(sun.elevation_rad));
+  const auto transmittance = air.TransmittanceToSpace(2.0, std::sin(sun.elevation_rad()));
   std::vector<double> direct;
   for (std::size_t band = 0; band < air.bands(); ++band) {
     direct.push_back(static_cast<double>(transmittance[band]) *
@@ -194,9 +194,8 @@ TEST(Render, TheDiskInThePictureHasTheSunsIlluminance) {
   // The radiance of the disk's pixels sums to the direct normal illuminance.
   const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   Scene at_sun = QuickScene(2.0, 0.0, 0.0, 1.0);
-  const SunPosition sun = tests::SunSeenIn(at_sun, noon);
-  at_sun.camera = CameraFromDegrees({2.0, false}, sun.azimuth_rad / kRadiansPerDegree,
-                                    sun.elevation_rad / kRadiansPerDegree, 0.0, 1.0);
+  const SunInSky sun = tests::SunSeenIn(at_sun, noon);
+  at_sun.camera = CameraFromDegrees({2.0, false}, sun.azimuth_deg, sun.elevation_deg, 0.0, 1.0);
   const SceneRenderer renderer(at_sun);
   const RenderSettings settings{
       .width = 100, .height = 100, .samples_per_pixel = 4, .air_nodes = 8, .layers = {}};
@@ -241,9 +240,9 @@ double IlluminanceOfBrightPixels(const Image& image, const CameraRays& camera) {
 TEST(Render, ADiskSmallerThanAPixelHasTheSunsIlluminance) {
   const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const Scene bare = QuickScene(2.0, 0.0, 0.0, 90.0);
-  const SunPosition sun = tests::SunSeenIn(bare, noon);
-  const double azimuth = sun.azimuth_rad / kRadiansPerDegree;
-  const double elevation = sun.elevation_rad / kRadiansPerDegree;
+  const SunInSky sun = tests::SunSeenIn(bare, noon);
+  const double azimuth = sun.azimuth_deg;
+  const double elevation = sun.elevation_deg;
   const Height height{2.0, false};
   const ThinLens lens{2.0, 0.05, 1.0};  // blurs a point at infinity by 25 mrad
   struct Case {
@@ -281,9 +280,9 @@ TEST(Render, ADiskSmallerThanAPixelHasTheSunsIlluminance) {
 TEST(Render, ASmallDiskIsFoundWithABoundOnTheNoise) {
   const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   Scene at_sun = QuickScene(2.0, 0.0, 0.0, 90.0);
-  const SunPosition sun = tests::SunSeenIn(at_sun, noon);
-  at_sun.camera = CameraFromDegrees({2.0, false}, sun.azimuth_rad / kRadiansPerDegree + 1.0,
-                                    sun.elevation_rad / kRadiansPerDegree + 1.0, 0.0, 90.0);
+  const SunInSky sun = tests::SunSeenIn(at_sun, noon);
+  at_sun.camera =
+      CameraFromDegrees({2.0, false}, sun.azimuth_deg + 1.0, sun.elevation_deg + 1.0, 0.0, 90.0);
   const SceneRenderer renderer(at_sun);
   RenderSettings settings{.width = 48, .height = 27, .samples_per_pixel = 4, .layers = {}};
   settings.noise = 0.02;
@@ -298,11 +297,11 @@ TEST(Render, ASmallDiskIsFoundWithABoundOnTheNoise) {
 TEST(Render, AMovingCameraBlursADiskSmallerThanAPixel) {
   const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const Scene scene = QuickScene(1000.0, 0.0, 0.0, 90.0);
-  const SunPosition sun = tests::SunSeenIn(scene, noon);
+  const SunInSky sun = tests::SunSeenIn(scene, noon);
   const SceneRenderer renderer(scene);
   const auto view = [&](double turn_deg) {
-    return CameraFromDegrees({1000.0, false}, sun.azimuth_rad / kRadiansPerDegree + turn_deg,
-                             sun.elevation_rad / kRadiansPerDegree, 0.0, 90.0);
+    return CameraFromDegrees({1000.0, false}, sun.azimuth_deg + turn_deg, sun.elevation_deg, 0.0,
+                             90.0);
   };
   const RenderSettings settings{.width = 48, .height = 27, .samples_per_pixel = 1, .layers = {}};
   const auto render = [&](double half_turn_deg) {
@@ -466,10 +465,10 @@ TEST(Polariser, LightOfTheSkyVibratesAcrossThePlaneOfTheSun) {
   const auto layer = [&](std::size_t channel, int x, int y) {
     return bare.layers[channel].values[static_cast<std::size_t>(y * kWidth + x)];
   };
-  const SunPosition sun = ApparentSunAt(scene.place, kPolarisedMorning);
-  const glm::dvec3 to_sun{std::cos(sun.elevation_rad) * std::sin(sun.azimuth_rad),
-                          std::cos(sun.elevation_rad) * std::cos(sun.azimuth_rad),
-                          std::sin(sun.elevation_rad)};
+  const SunInSky sun = ApparentSunAt(scene.place, kPolarisedMorning);
+  const glm::dvec3 to_sun{std::cos(sun.elevation_rad()) * std::sin(sun.azimuth_rad()),
+                          std::cos(sun.elevation_rad()) * std::cos(sun.azimuth_rad()),
+                          std::sin(sun.elevation_rad())};
   int compared = 0;
   double strongest = 0.0;
   for (int y = 0; y < kHeight; ++y) {
@@ -598,8 +597,7 @@ TEST(RecentSunlight, IsKeptForTheLastTwoSuns) {
   RecentSunlight recent(ground);
   constexpr double kRadius = 4.6e-3;
   const auto at = [&](double elevation_deg, double radius) {
-    return recent.At(DirectionFromAngles(elevation_deg * kRadiansPerDegree, 1.0).xyz, radius)
-        .sunlight;
+    return recent.At(EnuFromAngles(elevation_deg * kRadiansPerDegree, 1.0).xyz, radius).sunlight;
   };
   const auto first = at(10.0, kRadius), second = at(11.0, kRadius);
   EXPECT_NE(first, second);

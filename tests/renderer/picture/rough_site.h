@@ -52,10 +52,10 @@ inline GroundVertex VertexAt(const GroundSite& site, const glm::dvec3& point,
 
 /// The sun in the south-west, in midsummer.
 inline Lighting RoughSun(const GroundSite& site, double elevation_deg) {
-  SunPosition sun{};
-  sun.elevation_rad = elevation_deg * kRadiansPerDegree;
-  sun.azimuth_rad = 220.0 * kRadiansPerDegree;
-  sun.angular_radius_rad = 0.00465;
+  SunInSky sun{};
+  sun.elevation_deg = elevation_deg;
+  sun.azimuth_deg = 220.0;
+  sun.angular_radius_deg = 0.00465 / kRadiansPerDegree;
   sun.distance_au = 1.0;
   return LightingOf(sun, ParseInstant("2026-06-21T12:00:00Z"), kRoughPlace, site.medium());
 }

@@ -11,7 +11,7 @@ namespace alpenglow::tests {
 using namespace renderer;
 
 /// Returns the sun as the eye of a scene without terrain sees it.
-inline SunPosition SunSeenIn(const Scene& scene, const UtcTime& instant) {
+inline SunInSky SunSeenIn(const Scene& scene, const UtcTime& instant) {
   Place eye = scene.place;
   eye.height_m = scene.camera.height.value_m;
   return ApparentSunAt(eye, instant,

@@ -331,8 +331,8 @@ TEST_F(Terminator, SunlightEndsWhereTheRoundBodyTurnsAway) {
                                 .air_nodes = 4,
                                 .layers = {PictureLayer::kSunVisibility}};
   const Image picture = renderer.Render(evening, settings);
-  const SunPosition sun = renderer.ApparentSun(evening);
-  const glm::dvec3 to_sun = DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
+  const SunInSky sun = renderer.ApparentSun(evening);
+  const glm::dvec3 to_sun = EnuFromAngles(sun.elevation_rad(), sun.azimuth_rad()).xyz;
   const CameraRays camera(scene_.camera, settings.width, settings.height);
   int lit = 0, dark = 0, near_the_edge = 0;
   for (int y = 0; y < settings.height; ++y) {

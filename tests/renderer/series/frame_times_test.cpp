@@ -172,9 +172,10 @@ TEST(TimeText, MidnightIsWhereTheSunIsLowest) {
     EventDay day = Fuji();
     day.place.latitude_deg = latitude;
     const UtcTime midnight = InstantFromText("midnight", day);
-    const double lowest = SunAt(day.place, midnight).elevation_rad;
+    const double lowest = TrueSunAt(day.place, midnight).elevation_rad();
     for (const double seconds : {-600.0, 600.0})
-      EXPECT_LT(lowest, SunAt(day.place, AddSeconds(midnight, seconds)).elevation_rad) << latitude;
+      EXPECT_LT(lowest, TrueSunAt(day.place, AddSeconds(midnight, seconds)).elevation_rad())
+          << latitude;
     EXPECT_GT(SecondsBetween(InstantFromText("noon", day), midnight), 0.0) << "it ends the day";
     EXPECT_EQ(InstantFromText("midnight+20m", day), AddSeconds(midnight, 1200.0));
   }
@@ -195,9 +196,9 @@ TEST(TimeText, TheMoonHasEventsOfTheDay) {
   EXPECT_NEAR(SecondsBetween(next, rise), 0.0, 0.1) << "the error of its search";
   EXPECT_NEAR(SecondsBetween(rise, InstantFromText("moonrise+20m", day)), 1200.0, 1e-6);
   const UtcTime transit = InstantFromText("moon-transit", day);
-  const double before = MoonAt(day.place, AddSeconds(transit, -900.0)).elevation_rad;
-  const double at = MoonAt(day.place, transit).elevation_rad;
-  const double after = MoonAt(day.place, AddSeconds(transit, 900.0)).elevation_rad;
+  const double before = TrueMoonAt(day.place, AddSeconds(transit, -900.0)).elevation_rad();
+  const double at = TrueMoonAt(day.place, transit).elevation_rad();
+  const double after = TrueMoonAt(day.place, AddSeconds(transit, 900.0)).elevation_rad();
   EXPECT_GT(at, before);
   EXPECT_GT(at, after);
 }

@@ -110,10 +110,9 @@ TEST(JsonManifest, HasTheMoonAndNullForMissingValues) {
   FrameRecord record = RecordOf(frame, place, std::nullopt);
   record.Set("file", "f.0003.exr");
   const std::string early = JsonOfManifest({record}, {{"alpenglow.fov_deg", "60"}}, false);
-  const MoonPosition moon = MoonAt(place, frame.instant);
-  EXPECT_THAT(early,
-              HasSubstr("\"moon_elevation_deg\":" +
-                        std::to_string(moon.elevation_rad / kRadiansPerDegree).substr(0, 5)));
+  const MoonPosition moon = TrueMoonAt(place, frame.instant);
+  EXPECT_THAT(early, HasSubstr("\"moon_elevation_deg\":" +
+                               std::to_string(moon.elevation_deg).substr(0, 5)));
   EXPECT_THAT(early, HasSubstr("\"moon_illuminated\":0."));
   EXPECT_THAT(early, HasSubstr("\"utc\":\"2026-06-21T04:00:00Z\",\"local_time\":null"));
   EXPECT_THAT(early, HasSubstr("\"illuminance_lx\":null,\"ev100\":null,\"exposure\":null}"));

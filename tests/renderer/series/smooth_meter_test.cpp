@@ -117,7 +117,7 @@ std::vector<Frame> Minutes() {
 /// ones are beyond the camera's limit, and fade), with the slope of twilight in between (a factor
 /// of 1.4 in a minute, where the sun is 6 degrees low).
 double Luminance(const Frame& frame) {
-  const double elevation = SunAt(kPlaceOfSeries, frame.instant).elevation_rad / kRadiansPerDegree;
+  const double elevation = TrueSunAt(kPlaceOfSeries, frame.instant).elevation_deg;
   return std::pow(10.0, -3.0 + 6.7 / (1.0 + std::exp(-(elevation + 6.0) / 2.2)));
 }
 

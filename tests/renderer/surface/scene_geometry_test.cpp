@@ -76,7 +76,7 @@ TEST(SceneGeometry, HorizonsOfEllipsoidAndSphericalSkyAgreeToAPixel) {
         SCOPED_TRACE(::testing::Message() << "latitude " << latitude_deg << ", " << height_m
                                           << " m, azimuth " << azimuth_deg);
         const auto towards = [&](double elevation_rad) {
-          return DirectionFromAngles(elevation_rad, azimuth_deg * kRadiansPerDegree).xyz;
+          return EnuFromAngles(elevation_rad, azimuth_deg * kRadiansPerDegree).xyz;
         };
         const double of_ground = HorizonOf([&](double elevation_rad) {
           return ground.terrain->Intersect(eye, towards(elevation_rad)).has_value();
@@ -147,7 +147,7 @@ TEST(SceneGeometry, HitsLieOnTheRayAndAreLitOnTheSmoothSurface) {
   const glm::dvec3 eye(0.0, 0.0, 500.0);
   double farthest_m = 0.0;
   for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 15) {
-    const glm::dvec3 down = DirectionFromAngles(-0.6, azimuth_deg * kRadiansPerDegree).xyz;
+    const glm::dvec3 down = EnuFromAngles(-0.6, azimuth_deg * kRadiansPerDegree).xyz;
     const Hit hit = geometry.Trace(eye, down, kPixel_rad);
     ASSERT_EQ(hit.kind, HitKind::kTerrain);
     EXPECT_LT(glm::length(hit.point - (eye + hit.distance_m * down)), 1e-9);
@@ -186,7 +186,7 @@ TEST(SceneGeometry, LongChordsOfRaysMeetWhatShortOnesMeet) {
   double expected_m = 0.0;
   for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.13) {
     for (double elevation = -0.2; elevation < 0.01; elevation += 0.0007) {
-      const FanRay ray(fan, eye, DirectionFromAngles(elevation, azimuth).xyz);
+      const FanRay ray(fan, eye, EnuFromAngles(elevation, azimuth).xyz);
       const Hit truth = pieces.TerrainAlong(ray, kOff_rad, kPixel_rad, 0.0);
       const Hit blind = solid.TerrainAlong(ray, kOff_rad, kPixel_rad, 0.0);
       const Hit guided = solid.TerrainAlong(ray, kOff_rad, kPixel_rad, expected_m);

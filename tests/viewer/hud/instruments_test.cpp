@@ -373,10 +373,10 @@ TEST(DayStrip, ColoursAreThoseOfTheSky) {
   const DayStrip strip = MakeDayStrip(request);
   const Medium& medium = tests::Earth().medium();
   for (const int column : {7, 12, 18}) {
-    const SunPosition sun =
+    const SunInSky sun =
         ApparentSunAt(request.place, AddSeconds(request.begin, 3600.0 * (column + 0.5)));
     const SkyView view(tests::Earth().single_scattering(), *request.multiple_scattering,
-                       request.place.height_m, std::sin(sun.elevation_rad));
+                       request.place.height_m, std::sin(sun.elevation_rad()));
     const double dip =
         std::acos(medium.planet_radius_m / (medium.planet_radius_m + request.place.height_m));
     Image sky(1, strip.rows);

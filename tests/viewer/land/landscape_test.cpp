@@ -416,7 +416,7 @@ TEST_F(LandscapePictures, EdgesOfShadeRiseAndSinkWithTheSun) {
   const LookOut eye{PlaceOfSample(120.0, 60.0, 3000.0), 3.1, -0.3};
   constexpr double kRadius_rad = 0.0047;
   const auto towards = [&](double elevation_rad) {
-    return LocalFrame(kWgs84, eye.place).EcefFromEnu(DirectionFromAngles(elevation_rad, 2.0));
+    return LocalFrame(kWgs84, eye.place).EcefFromEnu(EnuFromAngles(elevation_rad, 2.0));
   };
   const auto shaded = [](const LocalFrame&, std::span<const LandVertex> vertices) {
     return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, {}, -2.0F});

@@ -40,7 +40,7 @@ struct Stage {
   SolvedAir air = tests::SolvedAsClearAir(scene.medium);
 
   [[nodiscard]] Lighting Under(const glm::dvec3& to_sun) const {
-    SunPosition sun;
+    SunInSky sun;
     sun.distance_au = 1.0;
     Lighting at =
         LightingOf(sun, UtcTime{60000, 0.0}, PlaceFromRadians(0.8, 0.0, 0.0), scene.medium);

@@ -167,9 +167,8 @@ TEST_F(SmallPictures, TheSunInFogIsAsBrightAsOnTheScreen) {
   window.scene.layers.emplace_back();
   window.scene.layers[0].extinction_per_m = 0.002;
   window.scene.layers[0].scale_height_m = 1500.0;
-  const SunPosition sun = tests::SunSeenIn(window.scene, window.now);
-  window.scene.camera = CameraFromDegrees(eye, sun.azimuth_rad / kRadiansPerDegree,
-                                          sun.elevation_rad / kRadiansPerDegree - 8.0, 0.0, 40.0);
+  const SunInSky sun = tests::SunSeenIn(window.scene, window.now);
+  window.scene.camera = CameraFromDegrees(eye, sun.azimuth_deg, sun.elevation_deg - 8.0, 0.0, 40.0);
   const DisplayImage full = Shown(window, {Quality::kHigh, 1.0});
   const DisplayImage small = Shown(window, {Quality::kLow, 0.25, Saving::kNearLand});
   const auto [disk, alike] = BrightChannels(full, small);

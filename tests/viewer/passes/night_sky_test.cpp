@@ -36,9 +36,8 @@ StarLight StarAt(double elevation_deg, double azimuth_deg, double lux) {
   BandLight light(4);
   for (std::size_t band = 0; band < 4; ++band)
     light[band] = static_cast<float>(lux * static_cast<double>(1 + band));
-  return {
-      DirectionFromAngles(elevation_deg * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree).xyz,
-      light, lux};
+  return {EnuFromAngles(elevation_deg * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree).xyz,
+          light, lux};
 }
 
 std::vector<StarPoint> PointsOf(const PaintedView& view, const std::vector<StarLight>& lights,
@@ -138,8 +137,7 @@ TEST(StarPoints, TheSkyTurnsWestwardsAboutThePoleOnceASiderealDay) {
   const double latitude = 46.5 * kRadiansPerDegree;
   const glm::dvec3 pole(0.0, std::cos(latitude), std::sin(latitude));
   EXPECT_NEAR(glm::length(TurnOfSky(latitude, 7000.0) * pole - pole), 0.0, 1e-14);
-  const glm::dvec3 south =
-      DirectionFromAngles(30.0 * kRadiansPerDegree, 180.0 * kRadiansPerDegree).xyz;
+  const glm::dvec3 south = EnuFromAngles(30.0 * kRadiansPerDegree, 180.0 * kRadiansPerDegree).xyz;
   EXPECT_LT((TurnOfSky(latitude, 600.0) * south).x, 0.0) << "west of the meridian later on";
   EXPECT_NEAR(glm::length(TurnOfSky(latitude, 86164.0905) * south - south), 0.0, 1e-12);
 }
@@ -226,7 +224,7 @@ TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
       const double elevation = kPi * ((row + 1.0) / NightSkyMap::kRows - 0.5);
       const double azimuth = 2.0 * kPi * (column + 1.0) / NightSkyMap::kColumns;
       const auto is =
-          static_cast<double>(reference.Above(DirectionFromAngles(elevation, azimuth).xyz)[1]);
+          static_cast<double>(reference.Above(EnuFromAngles(elevation, azimuth).xyz)[1]);
       EXPECT_NEAR(between, is, 0.08 * is) << "the lane of dust has edges within a texel";
       sum += std::abs(between / is - 1.0);
       ++count;
@@ -238,7 +236,7 @@ TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
 // --- the lights of the sky ---
 
 double SunElevationAt(const Place& eye, const UtcTime& now) {
-  return ApparentSunAt(eye, now).elevation_rad;
+  return ApparentSunAt(eye, now).elevation_rad();
 }
 
 // Returns the instant of the evening at which the sun has sunk to an elevation.
@@ -281,7 +279,7 @@ TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
 }
 
 DistantLight LightAt(double elevation_rad) {
-  return {LightSource::kSun, Unrefracted(DirectionFromAngles(elevation_rad, 0.0).xyz),
+  return {LightSource::kSun, Unrefracted(EnuFromAngles(elevation_rad, 0.0).xyz),
           0.27 * kRadiansPerDegree, BandLight(4)};
 }
 

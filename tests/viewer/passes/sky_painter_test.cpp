@@ -342,9 +342,9 @@ using DisksInTheSky = tests::HeadlessSharing<BareNoon>;
 // Hard case 32.
 TEST_F(DisksInTheSky, HaveTheirLightInPicturesOfAnySize) {
   LightOfDisks light(shared().painter, shared().view);
-  const SunPosition sun = light.sky().sun;
+  const SunInSky sun = light.sky().sun;
   const glm::dvec3 to_sun = DirectionOf(sun).seen;
-  const double whole = light.Reference(to_sun, sun.angular_radius_rad);
+  const double whole = light.Reference(to_sun, sun.angular_radius_rad());
   PaintedView alone = light.Beside(to_sun, 1.0, 0.0, {64, 64});
   CameraSample camera_sample(alone.now);
   camera_sample.poses = {alone.eye};
@@ -367,9 +367,9 @@ TEST_F(DisksInTheSky, HaveTheirLightInPicturesOfAnySize) {
 
 TEST_F(DisksInTheSky, HaveTheirLightInPanoramas) {
   LightOfDisks light(shared().painter, shared().view);
-  const SunPosition sun = light.sky().sun;
+  const SunInSky sun = light.sky().sun;
   const glm::dvec3 to_sun = DirectionOf(sun).seen;
-  const double whole = light.Reference(to_sun, sun.angular_radius_rad);
+  const double whole = light.Reference(to_sun, sun.angular_radius_rad());
   for (const PictureSize& size : {PictureSize{16, 8}, {48, 24}}) {
     for (const double heading : {0.0, 20.0, 45.0}) {
       PaintedView view = light.Beside(to_sun, 360.0, 0.0, size);
@@ -404,9 +404,9 @@ TEST_F(DisksInTheSky, HaveTheLightOfTheirVisiblePartAtTheHorizon) {
     PaintedView evening = shared().view;
     evening.now = AddSeconds(ParseInstant("2026-06-15T19:22:00Z"), seconds);
     LightOfDisks light(shared().painter, evening);
-    const SunPosition sun = light.sky().sun;
+    const SunInSky sun = light.sky().sun;
     const glm::dvec3 to_sun = DirectionOf(sun).seen;
-    const double visible = light.Reference(to_sun, sun.angular_radius_rad);
+    const double visible = light.Reference(to_sun, sun.angular_radius_rad());
     for (const double fov : {40.0, 150.0}) {
       EXPECT_NEAR(light.In(light.Beside(to_sun, fov, 7.0, {16, 9}), 1), visible,
                   0.05 * visible + 5.0)
@@ -422,9 +422,9 @@ TEST_F(LandPictures, DisksBehindLandHaveTheLightOfTheirVisiblePart) {
     const PaintedView view = ViewOf(shared().first.scene, shared().both.eye_m(),
                                     AddSeconds(shared().first.instant, seconds));
     LightOfDisks light(shared().both.painter(), view);
-    const SunPosition sun = light.sky().sun;
+    const SunInSky sun = light.sky().sun;
     const glm::dvec3 to_sun = DirectionOf(sun).seen;
-    last_lux = light.Reference(to_sun, sun.angular_radius_rad);
+    last_lux = light.Reference(to_sun, sun.angular_radius_rad());
     for (const double fov : {40.0, 150.0}) {
       EXPECT_NEAR(light.In(light.Beside(to_sun, fov, 7.0, {16, 9}), 1), last_lux, 0.05 * last_lux)
           << seconds << " s, field of view " << fov;
@@ -584,7 +584,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
   scene.place = {42.3439, -3.6969, 0.0};
   ExpectWithin(BothPrograms(scene, now).Difference(ViewOf(scene, 2.0, now)), {0.0031, 0.0041},
                "tables between nodes, within four degrees of the sun");
-  const SunPosition sun = ApparentSunAt(scene.place, now);
+  const SunInSky sun = ApparentSunAt(scene.place, now);
   const AirOfSky air(std::make_shared<const SolvedAir>(scene.medium, AirSolution::kDraft));
   const double left = double{FrameSkyAt(scene.place, now, air).lights.front().irradiance[1]} /
                       double{SunlightOf(sun, scene.medium).irradiance[1]};
@@ -597,9 +597,9 @@ TEST_F(SkyPainterTest, TheMoonOfTheEarthIsNotInTheSkyOfMars) {
   const UtcTime now = ParseInstant("2026-06-29T22:00:00Z");
   Scene scene = BareScene(300.0, 0.0, 0.0, 20.0);
   const MoonPosition moon = ApparentMoonAt(scene.place, now, AlmanacAir());
-  ASSERT_GT(moon.elevation_rad, 0.1);
-  scene.camera.heading_rad = moon.azimuth_rad;
-  scene.camera.pitch_rad = moon.elevation_rad;
+  ASSERT_GT(moon.elevation_rad(), 0.1);
+  scene.camera.heading_rad = moon.azimuth_rad();
+  scene.camera.pitch_rad = moon.elevation_rad();
   for (const char* planet : {"earth", "mars"}) {
     scene.medium = MediumPreset(planet);
     const PaintedView view = ViewOf(scene, 300.0, now);
