@@ -3,8 +3,10 @@
 /// Places on the earth and instants of UTC.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <compare>
+#include <cstdint>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -49,9 +51,17 @@ struct UtcTime {
   /// Makes an instant from the time since the beginning of 1970, counted without leap seconds.
   template <typename Number, typename Period>
   constexpr explicit UtcTime(std::chrono::duration<Number, Period> since_1970) {
-    const auto day = std::chrono::floor<std::chrono::days>(since_1970);
-    modified_julian_day += static_cast<int>(day.count());
-    second_of_day = std::chrono::duration<double>(since_1970 - day).count();
+    // The days are counted towards 0 first, because the day before the earliest time of a clock may
+    // be none of its times. All functions refuse days beyond the limit.
+    constexpr std::int64_t kFarthest_days = 1'000'000'000;
+    const auto whole = std::chrono::duration_cast<std::chrono::days>(since_1970);
+    const bool is_before = since_1970 < whole;
+    auto rest = since_1970 - whole;
+    if (is_before) rest += std::chrono::days(1);
+    modified_julian_day +=
+        static_cast<int>(std::clamp<std::int64_t>(whole.count(), -kFarthest_days, kFarthest_days));
+    modified_julian_day -= is_before ? 1 : 0;
+    second_of_day = std::chrono::duration<double>(rest).count();
   }
 
   /// Returns the time of the system clock, rounded to microseconds.

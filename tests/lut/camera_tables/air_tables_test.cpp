@@ -48,7 +48,7 @@ void ExpectErrorsBelow(const SolvedAir& air, const EyeUnderLight& eye, AirQualit
   const tests::AirReference reference(air, eye);
   const auto expect = [](const tests::AirErrors& errors, double bound, const char* what) {
     EXPECT_LT(errors.Rms(), kSampling * bound) << what << ": a third more than measured";
-    EXPECT_LT(errors.Percentile(99.0), 5.0 * bound) << what;
+    EXPECT_LT(errors.Percentile(99.0), 5.0 * kSampling * bound) << what;
   };
   expect(tests::SkyErrors(reference, reading, tables.map, kRays), bounds.sky, "sky");
   expect(tests::WayErrors(reference, reading, tables.map, kRays), bounds.ways, "ways");
