@@ -106,7 +106,7 @@ void Describe(SkyJob& job) {
 
 /// The image, and the illuminance on a horizontal plane at the observer.
 struct RenderedSky {
-  Image image;
+  HdrImage image;
   double illuminance_lux;
 };
 
@@ -119,7 +119,7 @@ RenderedSky Rendered(const SkyJob& job, ProgressStyle style) {
       HorizontalIlluminance(air, multiple_scattering, job.settings.altitude_m, job.settings.sun)};
 }
 
-double Ev100Of(const RenderedSky& sky, const Image& seen, const ExposureRule& rule,
+double Ev100Of(const RenderedSky& sky, const HdrImage& seen, const ExposureRule& rule,
                const Look& look) {
   if (rule.kind == ExposureRule::Kind::kIncident) return IncidentEv100(sky.illuminance_lux);
   return Ev100By(
@@ -143,7 +143,7 @@ void MakeSky(const SkyOptions& options, const CommonOptions& common) {
   const RenderedSky sky = Rendered(job, common.progress_style());
   const PictureView view{Projection::kLatitudeLongitude, 2.0 * kPi / sky.image.width};
   look = Settled(look, sky.image, view);
-  const Image seen = Seen(sky.image, look, view);
+  const HdrImage seen = Seen(sky.image, look, view);
   const double ev100 = Ev100Of(sky, seen, rule, look);
   Describe(job);
   job.metadata["alpenglow.illuminance_lux"] = fmt::format("{:.6g}", sky.illuminance_lux);

@@ -188,7 +188,7 @@ class FramePictures {
     const double behind_filter = plan_.scene.camera.polariser_rad ? 0.5 : 1.0;
     return behind_filter * Loaded(nullptr).Illuminance(CameraSampleAt(frame));
   }
-  [[nodiscard]] Image Small(const Frame& frame) {
+  [[nodiscard]] HdrImage Small(const Frame& frame) {
     return Loaded(nullptr).Render(CameraSampleAt(frame), preview_);
   }
 

@@ -108,7 +108,7 @@ std::vector<std::filesystem::path> PictureQueue::Files() const {
 // The lock is released while the instruments are drawn.
 void PictureQueue::DrawOverlay(std::unique_lock<std::mutex>& lock) {
   if (overlay_.developed == nullptr) return;
-  const Image& developed = *overlay_.developed;
+  const HdrImage& developed = *overlay_.developed;
   const auto draw = requests_.front().instruments;
   const bool has_window = has_window_;
   lock.unlock();
@@ -124,7 +124,7 @@ void PictureQueue::DrawOverlay(std::unique_lock<std::mutex>& lock) {
   changed_.notify_all();
 }
 
-DisplayImage PictureQueue::WithInstruments(const Image& developed) {
+DisplayImage PictureQueue::WithInstruments(const HdrImage& developed) {
   std::unique_lock lock(mutex_);
   overlay_ = {&developed, std::nullopt, nullptr};
   changed_.notify_all();

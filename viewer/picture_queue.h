@@ -35,7 +35,7 @@ struct PictureRequest {
   ImageSize size;
   /// Draws instruments over a developed picture; an empty function draws none. It is called from
   /// NextFrame and Finish.
-  std::function<DisplayImage(const Image& developed)> instruments = {};
+  std::function<DisplayImage(const HdrImage& developed)> instruments = {};
 };
 
 /// Outcome of a request.
@@ -86,7 +86,7 @@ class PictureQueue {
   struct SecondFlight;
   /// A picture that waits for the drawing thread to add instruments.
   struct Overlay {
-    const Image* developed = nullptr;
+    const HdrImage* developed = nullptr;
     std::optional<DisplayImage> drawn;
     std::exception_ptr fault;
   };
@@ -97,7 +97,7 @@ class PictureQueue {
                                  std::unique_ptr<SecondFlight>& second);
   void Write(const PictureRequest& request, SecondFlight& second);
   void Record(double share);
-  [[nodiscard]] DisplayImage WithInstruments(const Image& developed);
+  [[nodiscard]] DisplayImage WithInstruments(const HdrImage& developed);
   void DrawOverlay(std::unique_lock<std::mutex>& lock);
 
   Scene scene_;

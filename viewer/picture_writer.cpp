@@ -54,12 +54,13 @@ PictureProgress PartOf(const PictureProgress& progress, double begin, double ran
 
 }  // namespace
 
-Image PictureWriter::Picture(const ImageSize& size, int samples, const PictureProgress& progress) {
+HdrImage PictureWriter::Picture(const ImageSize& size, int samples,
+                                const PictureProgress& progress) {
   return PictureOf(flight_.ViewOf(size), samples, progress);
 }
 
-Image PictureWriter::PictureOf(const PaintedView& view, int samples,
-                               const PictureProgress& progress) {
+HdrImage PictureWriter::PictureOf(const PaintedView& view, int samples,
+                                  const PictureProgress& progress) {
   if (IsPanorama(view)) RequirePanoramaSize(view);
   const FrameRenderer::StillSizes still_sizes(flight_.frames());
   if (progress) progress(kBegunShare);
@@ -100,7 +101,7 @@ Metadata PictureWriter::HeaderOf(const PaintedView& view, const Development& dev
 Metadata PictureWriter::PaintStill(const ToneMapPass::Screen& screen,
                                    const PictureProgress& progress) {
   const PaintedView view = InWindow(flight_.ViewOf({screen.width, screen.height}));
-  const Image image = PictureOf(view, kPictureSamples, progress);
+  const HdrImage image = PictureOf(view, kPictureSamples, progress);
   const Development development = flight_.exposure().DevelopmentOf(image);
   flight_.exposure().Record(development);
   flight_.frames().ShowStill(image, development, screen);
@@ -110,7 +111,7 @@ Metadata PictureWriter::PaintStill(const ToneMapPass::Screen& screen,
 void PictureWriter::Write(const std::filesystem::path& file, const ImageSize& size,
                           const PictureProgress& progress) {
   const PictureFormat& format = FormatOfPicture(file);
-  Image image = Picture(size, kPictureSamples, progress);
+  HdrImage image = Picture(size, kPictureSamples, progress);
   const PaintedView view = flight_.ViewOf(size);
   const Projection projection = ProjectionOf(view);
   const Development development = flight_.exposure().DevelopmentOf(image, projection);
@@ -140,7 +141,7 @@ void PictureWriter::WriteReplay(const CameraPath& path,
 
 DisplayImage PictureWriter::Film(const ReplayFrame& frame, const ImageSize& size, double seconds) {
   flight_.Show(frame);
-  Image image = Picture(size, kPictureSamples);
+  HdrImage image = Picture(size, kPictureSamples);
   ExposureControl& exposure = flight_.exposure();
   exposure.Follow(ReadingOf(image, exposure.look(), ProjectionOf(flight_.ViewOf(size))),
                   flight_.now(), seconds);

@@ -20,8 +20,8 @@ class PictureWriter {
   /// Returns the linear picture as seen by the eye, with everything that is visible there. Any size
   /// is possible: a picture that OpenGL cannot draw as a whole is painted in tiles, and a panorama
   /// is assembled from perspectives. Throws OptionError if memory is insufficient.
-  [[nodiscard]] Image Picture(const ImageSize& size, int samples,
-                              const PictureProgress& progress = {});
+  [[nodiscard]] HdrImage Picture(const ImageSize& size, int samples,
+                                 const PictureProgress& progress = {});
   /// Paints the view again with several rays per pixel and writes it, linear or developed by the
   /// format of the file. The header has the settings of the picture. Throws OutputError, and
   /// OptionError for a name that is no picture's.
@@ -40,8 +40,8 @@ class PictureWriter {
   [[nodiscard]] DisplayImage Film(const ReplayFrame& frame, const ImageSize& size, double seconds);
 
  private:
-  [[nodiscard]] Image PictureOf(const PaintedView& view, int samples,
-                                const PictureProgress& progress);
+  [[nodiscard]] HdrImage PictureOf(const PaintedView& view, int samples,
+                                   const PictureProgress& progress);
   [[nodiscard]] Metadata HeaderOf(const PaintedView& view, const Development& development) const;
 
   FlightSession& flight_;

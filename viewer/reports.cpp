@@ -53,7 +53,7 @@ constexpr std::array<Shortcut, 5> kShortcuts{
      {"octaves of the ground", [](PaintSizes& sizes) { sizes.dropped_octaves = 0; }}}};
 
 struct TimedPicture {
-  Image image;
+  HdrImage image;
   double frame_ms;
 };
 
@@ -84,7 +84,7 @@ TimedPicture Paint(SkyPainter& painter, const PaintedView& view, const PaintSize
   painter.Use(sizes);
   if (!IsPanorama(view)) return PaintPerspective(painter, view);
   double sum_ms = 0.0;
-  Image image = PaintPanorama(view, [&](const PaintedView& side) {
+  HdrImage image = PaintPanorama(view, [&](const PaintedView& side) {
     TimedPicture painted = PaintPerspective(painter, side);
     sum_ms += painted.frame_ms;
     return std::move(painted.image);
@@ -120,7 +120,7 @@ class OneRay {
   Upscaler upscaler_{Upscaler::Shows::kLight};
 };
 
-Image ReferenceOf(const ReferenceScene& scene, const PaintedView& view) {
+HdrImage ReferenceOf(const ReferenceScene& scene, const PaintedView& view) {
   RenderSettings settings;
   settings.width = view.width;
   settings.height = view.height;
@@ -138,7 +138,7 @@ std::string Row(const std::string& name, const ErrorStatistics& is, const std::s
 // Compares a view that is painted at a fraction of its size and upscaled with the view at one ray
 // per pixel.
 std::string FewerRays(SkyPainter& painter, const PaintedView& view,
-                      const std::vector<Channel>& edges, double scale) {
+                      const std::vector<ImageLayer>& edges, double scale) {
   painter.WaitUntilReady(view);
   OneRay of_view(painter, view);
   TimedPicture all = of_view.At(1.0);
@@ -238,7 +238,7 @@ ReplayFrame BenchmarkFlight(const CameraPose& start, const UtcTime& begin, doubl
 std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene, const PaintedView& view,
                         Quality quality) {
   const PaintSizes sizes = SizesOf(quality);
-  const Image by_renderer = ReferenceOf(scene, view);
+  const HdrImage by_renderer = ReferenceOf(scene, view);
   const std::vector<bool> edges = EdgesOf(by_renderer);
   if (std::find(edges.begin(), edges.end(), false) == edges.end()) {
     return fmt::format("quality {}, {}x{}: every pixel is an edge, so that none can be compared\n",
@@ -257,7 +257,7 @@ std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene, const 
     PaintSizes better = sizes;
     shortcut.perfect(better);
     const TimedPicture without = Paint(painter, view, better);
-    Image reference = without.image;
+    HdrImage reference = without.image;
     reference.layers = by_renderer.layers;
     text += Row(shortcut.name, DifferenceOf(reference, painted.image),
                 fmt::format("saves {:.1f}", without.frame_ms - painted.frame_ms));

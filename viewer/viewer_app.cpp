@@ -234,8 +234,8 @@ void ViewerApp::Request(const PictureOrder& picture) {
   });
 }
 
-std::function<DisplayImage(const Image&)> ViewerApp::Instruments() {
-  return [this, model = Model(), settings = SettingsOf(hud_)](const Image& developed) {
+std::function<DisplayImage(const HdrImage&)> ViewerApp::Instruments() {
+  return [this, model = Model(), settings = SettingsOf(hud_)](const HdrImage& developed) {
     const RenderTarget screen(developed.width, developed.height, RenderTarget::Depth::kNone);
     glActiveTexture(GL_TEXTURE0 + kUploadUnit);
     screen.Write(developed);

@@ -100,7 +100,7 @@ class ViewerApp final : public FlightCommands {
   void Age(double seconds);
   void WantStrip();
   /// Returns a function that draws the instruments of this moment over a picture.
-  [[nodiscard]] std::function<DisplayImage(const Image&)> Instruments();
+  [[nodiscard]] std::function<DisplayImage(const HdrImage&)> Instruments();
   /// Displays errors of a work as warnings.
   template <typename Work>
   void Try(const Work& work);

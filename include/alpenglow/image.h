@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -15,21 +16,40 @@
 
 namespace ALPENGLOW_EXPORT alpenglow {
 
-/// A plane of values beside the colours of an image, row 0 at the top.
+/// A plane of values beside the colours of an image, row 0 at the top. Values of "depth.Z" are
+/// distances [m], infinite where a ray meets nothing; all other values are finite.
 struct ImageLayer {
   std::string name;           ///< channel in the EXR file, such as "depth.Z"
   std::vector<float> values;  ///< width * height values
 };
 
+/// Parameters and origin of an image by name, stored as attributes of its file.
+using Metadata = std::map<std::string, std::string>;
+
 /// An image in linear sRGB [cd/m^2]. Colours are not clamped: values outside of the gamut are
 /// negative.
 struct HdrImage {
-  int width = 0;                                ///< pixels
-  int height = 0;                               ///< pixels
-  std::vector<std::array<float, 3>> rgb;        ///< width * height pixels, row 0 at the top
-  std::vector<ImageLayer> layers;               ///< further planes of the same size
-  bool is_panorama = false;                     ///< longitude-latitude picture of the whole sphere
-  std::map<std::string, std::string> metadata;  ///< attributes of the file
+  int width = 0;                          ///< pixels
+  int height = 0;                         ///< pixels
+  std::vector<std::array<float, 3>> rgb;  ///< width * height pixels, row 0 at the top
+  std::vector<ImageLayer> layers;         ///< further planes of the same size
+  bool is_panorama = false;               ///< longitude-latitude picture of the whole sphere
+  Metadata metadata;                      ///< attributes of the file
+
+  HdrImage() = default;
+  /// Makes a black image. Throws InputError unless both sides lie in [1, 32768].
+  HdrImage(int image_width, int image_height);
+
+  /// Returns a pixel, which must lie in the image: this is not checked.
+  [[nodiscard]] std::array<float, 3>& at(int x, int y) { return rgb[PixelAt(x, y)]; }
+  /// Returns a pixel, which must lie in the image: this is not checked.
+  [[nodiscard]] const std::array<float, 3>& at(int x, int y) const { return rgb[PixelAt(x, y)]; }
+
+ private:
+  [[nodiscard]] std::size_t PixelAt(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
 };
 
 /// Exposure and colours of an image for a display. The names are those of the programs' options
@@ -52,8 +72,9 @@ struct DisplayOptions {
 /// or that of another attribute of OpenEXR.
 void WriteExr(const std::filesystem::path& file, const HdrImage& image);
 
-/// Reads an OpenEXR file of scan lines with channels R, G and B. Throws InputError for a file that
-/// is missing, damaged or of another kind. Panoramas are recognised if WriteExr() wrote them.
+/// Reads an OpenEXR file of scan lines with channels R, G and B; every other channel becomes a
+/// layer. Throws InputError for a file that is missing, damaged or of another kind. Panoramas are
+/// recognised by the attribute envmap of OpenEXR, which WriteExr() and the programs write.
 [[nodiscard]] HdrImage ReadExr(const std::filesystem::path& file);
 
 /// Returns 8-bit sRGB, three values per pixel: exposed, tone-mapped and dithered. The result is the

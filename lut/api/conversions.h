@@ -8,14 +8,12 @@
 #pragma once
 
 #include <alpenglow/geometry.h>
-#include <alpenglow/image.h>
 #include <alpenglow/sky.h>
 
 #include <glm/vec3.hpp>
 #include <limits>
 
 #include "atmosphere/ray/ray.h"
-#include "lut/image/image.h"
 #include "lut/table_io/table_folder.h"
 
 namespace alpenglow {
@@ -40,9 +38,6 @@ struct AltitudeAndZenith {
 [[nodiscard]] atmosphere::ViewRay RayFrom(
     const AltitudeAndZenith& eye, const glm::dvec3& view, const glm::dvec3& to_sun,
     double length_m = std::numeric_limits<double>::infinity());
-
-/// Returns the image with its layers; the metadata is empty.
-[[nodiscard]] HdrImage HdrImageFrom(lut::Image image);
 
 /// The light of a sky is that of the look-ups. Their tables have multiple scattering, and belong to
 /// the medium of the atmosphere.

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "lut/api/conversions.h"
 #include "lut/image/development.h"
 #include "lut/image/exr.h"
 #include "lut/image/image.h"
@@ -22,7 +21,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr const char* kProjectionKey = "alpenglow.projection";
 constexpr std::size_t kLongestChannel = 255;   // of OpenEXR
 constexpr std::size_t kLongestAttribute = 79;  // of PNG
 
@@ -30,9 +28,8 @@ lut::Projection ProjectionOf(const HdrImage& image) {
   return image.is_panorama ? lut::Projection::kLatitudeLongitude : lut::Projection::kCamera;
 }
 
-/// Returns the image. Throws InputError for a wrong number of values and for values that are not
-/// finite.
-lut::Image CheckedImage(const HdrImage& image) {
+/// Throws InputError for a wrong number of values and for values that no file stores.
+void RequireValid(const HdrImage& image) {
   atmosphere::RequireInRange(image.width, 1, lut::kLargestImageSide, "width");
   atmosphere::RequireInRange(image.height, 1, lut::kLargestImageSide, "height");
   const std::size_t pixels =
@@ -41,10 +38,6 @@ lut::Image CheckedImage(const HdrImage& image) {
     throw InputError(fmt::format("rgb has {} pixels; it must have {} times {}", image.rgb.size(),
                                  image.width, image.height));
   }
-  lut::Image checked;
-  checked.width = image.width;
-  checked.height = image.height;
-  checked.rgb = image.rgb;
   std::set<std::string> names{"R", "G", "B"};
   for (const ImageLayer& layer : image.layers) {
     if (layer.name.empty() || layer.name.size() > kLongestChannel ||
@@ -55,14 +48,12 @@ lut::Image CheckedImage(const HdrImage& image) {
     }
     if (!names.insert(layer.name).second)
       throw InputError(fmt::format("the layer \"{}\" is there twice", layer.name));
-    checked.layers.push_back({layer.name, layer.values});
   }
-  if (const auto fault = lut::FaultyValue(checked)) throw InputError(*fault);
-  return checked;
+  if (const auto fault = lut::FaultyValue(image)) throw InputError(*fault);
 }
 
 /// Returns the attributes of a file. Throws InputError for names that EXR or PNG cannot store.
-lut::Metadata CheckedMetadata(const HdrImage& image) {
+Metadata CheckedMetadata(const HdrImage& image) {
   for (const auto& [name, value] : image.metadata) {
     const bool is_printable =
         std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; });
@@ -93,9 +84,9 @@ Developed DevelopedBy(const HdrImage& image, const DisplayOptions& options) {
   look.agx = lut::AgxLookFromName(options.look);
   look.white = lut::WhiteBalanceFromText(options.white_balance);
   const lut::PictureView view{ProjectionOf(image)};
-  const lut::Image light = CheckedImage(image);
-  look = lut::Settled(lut::LookUnder(rule, look), light, view);
-  const lut::Image seen = lut::Seen(light, look, view);
+  RequireValid(image);
+  look = lut::Settled(lut::LookUnder(rule, look), image, view);
+  const HdrImage seen = lut::Seen(image, look, view);
   const double ev100 = lut::Ev100By(
       rule, lut::MeterEv100(seen, lut::kSunDiskLuminance_cd_per_m2, view.projection), look);
   return {lut::Develop(seen, ev100, look), ev100, look};
@@ -103,28 +94,18 @@ Developed DevelopedBy(const HdrImage& image, const DisplayOptions& options) {
 
 }  // namespace
 
-HdrImage HdrImageFrom(lut::Image image) {
-  HdrImage converted;
-  converted.width = image.width;
-  converted.height = image.height;
-  converted.rgb = std::move(image.rgb);
-  for (lut::Channel& layer : image.layers)
-    converted.layers.push_back({std::move(layer.name), std::move(layer.values)});
-  return converted;
+HdrImage::HdrImage(int image_width, int image_height) : width(image_width), height(image_height) {
+  atmosphere::RequireInRange(image_width, 1, lut::kLargestImageSide, "image width");
+  atmosphere::RequireInRange(image_height, 1, lut::kLargestImageSide, "image height");
+  rgb.resize(static_cast<std::size_t>(image_width) * static_cast<std::size_t>(image_height));
 }
 
 void WriteExr(const std::filesystem::path& file, const HdrImage& image) {
-  lut::Metadata metadata = CheckedMetadata(image);
-  if (image.is_panorama) metadata[kProjectionKey] = "latlong";
-  lut::WriteExr(file, CheckedImage(image), metadata, ProjectionOf(image));
+  RequireValid(image);
+  lut::WriteExr(file, image, CheckedMetadata(image), ProjectionOf(image));
 }
 
-HdrImage ReadExr(const std::filesystem::path& file) {
-  HdrImage image = HdrImageFrom(lut::ReadExr(file));
-  image.metadata = lut::ReadExrMetadata(file);
-  image.is_panorama = image.metadata.contains(kProjectionKey);
-  return image;
-}
+HdrImage ReadExr(const std::filesystem::path& file) { return lut::ReadExrPicture(file); }
 
 std::vector<std::uint8_t> ForDisplay(const HdrImage& image, const DisplayOptions& options) {
   return DevelopedBy(image, options).display.rgb;
@@ -132,7 +113,7 @@ std::vector<std::uint8_t> ForDisplay(const HdrImage& image, const DisplayOptions
 
 void WritePng(const std::filesystem::path& file, const HdrImage& image,
               const DisplayOptions& options) {
-  lut::Metadata metadata = CheckedMetadata(image);
+  Metadata metadata = CheckedMetadata(image);
   const Developed developed = DevelopedBy(image, options);
   metadata["alpenglow.ev100"] = fmt::format("{:.6f}", developed.ev100);
   metadata["alpenglow.tone_curve"] = lut::NameOf(developed.look);

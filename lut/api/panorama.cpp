@@ -3,8 +3,6 @@
 
 #include <alpenglow/errors.h>
 
-#include <utility>
-
 #include "atmosphere/api/conversions.h"
 #include "atmosphere/base/error.h"
 #include "lut/api/conversions.h"
@@ -51,12 +49,8 @@ HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options) {
   settings.sun = options.sun;
   settings.orientation = OrientationOf(options.centre);
   settings.sun_disk = options.draws_sun;
-  lut::Image image = lut::RenderPanorama(sky.state().lookup.single_scattering(),
-                                         sky.state().lookup.multiple_scattering(), settings);
-  HdrImage panorama;
-  panorama.width = image.width;
-  panorama.height = image.height;
-  panorama.rgb = std::move(image.rgb);
+  HdrImage panorama = lut::RenderPanorama(sky.state().lookup.single_scattering(),
+                                          sky.state().lookup.multiple_scattering(), settings);
   panorama.is_panorama = true;
   panorama.metadata = {{"Software", lut::ProducerText()},
                        {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},

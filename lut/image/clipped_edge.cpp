@@ -28,13 +28,13 @@ constexpr float kSteepest = 1.6F;
 // is brighter than its background by at least this factor.
 constexpr float kTouched = 1.25F;
 
-float LuminanceAt(const Image& image, int x, int y) {
+float LuminanceAt(const HdrImage& image, int x, int y) {
   const auto& rgb = image.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1));
   return shared::Luminance(rgb[0], rgb[1], rgb[2]);
 }
 
 /// Returns whether a pixel belongs to a 2x2 square of pixels that are about as bright.
-bool IsEven(const Image& image, int x, int y, float light) {
+bool IsEven(const HdrImage& image, int x, int y, float light) {
   const auto bright = [&](int i, int j) { return LuminanceAt(image, i, j) >= kEven * light; };
   for (const int i : {x - 1, x + 1}) {
     for (const int j : {y - 1, y + 1}) {
@@ -50,7 +50,7 @@ struct Pixel {
 
 /// Calls visit(pixel) for all pixels at most `reach` rows and columns away from `at`.
 template <typename Visit>
-void Around(const Image& image, const Pixel& at, int reach, const Visit& visit) {
+void Around(const HdrImage& image, const Pixel& at, int reach, const Visit& visit) {
   for (int y = std::max(at.y - reach, 0); y <= std::min(at.y + reach, image.height - 1); ++y) {
     for (int x = std::max(at.x - reach, 0); x <= std::min(at.x + reach, image.width - 1); ++x) {
       visit(Pixel{x, y});
@@ -64,7 +64,7 @@ struct EdgeLight {
 };
 
 /// Returns the brightest pixel within the square root of `reach2`.
-EdgeLight BrightestAround(const Image& image, const Pixel& at, int reach2) {
+EdgeLight BrightestAround(const HdrImage& image, const Pixel& at, int reach2) {
   EdgeLight light{at, LuminanceAt(image, at.x, at.y)};
   Around(image, at, kToLight, [&](const Pixel& pixel) {
     const int dx = pixel.x - at.x, dy = pixel.y - at.y;
@@ -80,7 +80,7 @@ struct EdgeDirection {
 
 /// Returns the unit vector away from the light around a pixel; zero if the light is equal on all
 /// sides.
-EdgeDirection AwayFromLight(const Image& image, const Pixel& at) {
+EdgeDirection AwayFromLight(const HdrImage& image, const Pixel& at) {
   EdgeDirection away{0.0F, 0.0F};
   Around(image, at, kToBeside, [&](const Pixel& pixel) {
     const float luminance = LuminanceAt(image, pixel.x, pixel.y);
@@ -126,7 +126,7 @@ float RiseTowardsLight(const MeanColour& near, const MeanColour& far) {
 /// direction and the direction away from the light, times the rise of the aureole. If no pixel lies
 /// in that direction, the mean is weighted by proximity alone. Returns nullopt if all pixels are
 /// clipped.
-std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, float white) {
+std::optional<std::array<float, 3>> Beside(const HdrImage& image, const Pixel& at, float white) {
   const EdgeDirection away = AwayFromLight(image, at);
   MeanColour behind, around, near, far;
   Around(image, at, kToBeside, [&](const Pixel& pixel) {
@@ -152,7 +152,7 @@ std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, 
 
 }  // namespace
 
-std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y, float white) {
+std::optional<ClippedEdge> ClippedEdgeAt(const HdrImage& image, int x, int y, float white) {
   const float here = LuminanceAt(image, x, y);
   const auto clips = [&](int dx, int dy) { return LuminanceAt(image, x + dx, y + dy) > white; };
   if (!clips(0, 0) && !clips(-2, 0) && !clips(2, 0) && !clips(0, -2) && !clips(0, 2)) {

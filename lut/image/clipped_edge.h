@@ -44,7 +44,7 @@ struct ClippedEdge {
 /// `share` is at most 0.16. For smaller disks, whose middle lies within four pixels, `share` is
 /// less than the covered fraction by up to 0.3.
 /// @param white  luminance that a display shows as white, in the image's unit, > 0.
-[[nodiscard]] std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y,
+[[nodiscard]] std::optional<ClippedEdge> ClippedEdgeAt(const HdrImage& image, int x, int y,
                                                        float white);
 
 }  // namespace alpenglow::lut

@@ -28,7 +28,7 @@ void RequireFinite(const std::array<float, 3>& pixel, int x, int y) {
 
 /// Returns the display light of a pixel. At the edge of a disk that is far brighter than white it
 /// is mixed from the display light of the disk and of its background.
-Rgb<float> DisplayLightAt(const Image& image, int x, int y, float scale, const Look& look) {
+Rgb<float> DisplayLightAt(const HdrImage& image, int x, int y, float scale, const Look& look) {
   const auto shown = [&](const std::array<float, 3>& rgb) {
     return DisplayLight(look.curve, rgb, scale, look.agx);
   };
@@ -44,7 +44,8 @@ Rgb<float> DisplayLightAt(const Image& image, int x, int y, float scale, const L
   return mixed;
 }
 
-void DevelopRow(const Image& image, int y, float scale, const Look& look, DisplayImage& display) {
+void DevelopRow(const HdrImage& image, int y, float scale, const Look& look,
+                DisplayImage& display) {
   for (int x = 0; x < image.width; ++x) {
     const std::array<float, 3>& pixel = image.at(x, y);
     RequireFinite(pixel, x, y);
@@ -60,7 +61,7 @@ void DevelopRow(const Image& image, int y, float scale, const Look& look, Displa
 
 }  // namespace
 
-DisplayImage Develop(const Image& seen, double ev100, const Look& look) {
+DisplayImage Develop(const HdrImage& seen, double ev100, const Look& look) {
   if (look.local_exposure) {
     Look rest = look;
     rest.local_exposure = false;

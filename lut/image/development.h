@@ -11,6 +11,6 @@ namespace alpenglow::lut {
 
 /// Exposes, tone-maps and dithers an image from Seen(). Throws InternalError for a pixel that is not
 /// finite.
-[[nodiscard]] DisplayImage Develop(const Image& seen, double ev100, const Look& look);
+[[nodiscard]] DisplayImage Develop(const HdrImage& seen, double ev100, const Look& look);
 
 }  // namespace alpenglow::lut

@@ -146,7 +146,7 @@ class CheckedStream : public Imf::OStream {
   std::ofstream file_;
 };
 
-Imf::Header HeaderOf(const Image& image, const Metadata& metadata, Projection projection) {
+Imf::Header HeaderOf(const HdrImage& image, const Metadata& metadata, Projection projection) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   constexpr int kLevel = 2;  // for floats, higher ones save 3 % of the bytes in half as long again
@@ -161,7 +161,7 @@ Imf::Header HeaderOf(const Image& image, const Metadata& metadata, Projection pr
   for (const char* name : {"R", "G", "B"}) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   }
-  for (const Channel& layer : image.layers) {
+  for (const ImageLayer& layer : image.layers) {
     ALPENGLOW_ENSURE(layer.values.size(), ==, image.rgb.size());
     header.channels().insert(layer.name, Imf::Channel(Imf::FLOAT));
   }
@@ -175,13 +175,13 @@ Imf::Slice SliceOf(const float* first, std::size_t stride, int width) {
           stride * sizeof(float) * static_cast<std::size_t>(width)};
 }
 
-Imf::FrameBuffer FrameBufferOf(const Image& image) {
+Imf::FrameBuffer FrameBufferOf(const HdrImage& image) {
   Imf::FrameBuffer buffer;
   const float* rgb = image.rgb.front().data();
   buffer.insert("R", SliceOf(rgb, 3, image.width));
   buffer.insert("G", SliceOf(rgb + 1, 3, image.width));
   buffer.insert("B", SliceOf(rgb + 2, 3, image.width));
-  for (const Channel& layer : image.layers) {
+  for (const ImageLayer& layer : image.layers) {
     buffer.insert(layer.name, SliceOf(layer.values.data(), 1, image.width));
   }
   return buffer;
@@ -218,7 +218,7 @@ class CompressionThreads {
   inline static bool is_ours_ = false;  // the number of threads is that of the first object
 };
 
-void WritePixels(const fs::path& name, const Image& image, const Metadata& metadata,
+void WritePixels(const fs::path& name, const HdrImage& image, const Metadata& metadata,
                  Projection projection) {
   CheckedStream stream(name);
   {
@@ -252,7 +252,7 @@ Result Reading(const fs::path& file, const std::function<Result()>& read) {
 
 /// Returns an empty image of the size in the header. Throws unless every channel covers every pixel
 /// and the origin is (0, 0).
-Image EmptyImageFor(const fs::path& file, const Imf::Header& header) {
+HdrImage EmptyImageFor(const fs::path& file, const Imf::Header& header) {
   const Imath::Box2i window = header.dataWindow();
   const auto width = static_cast<std::int64_t>(window.max.x) - window.min.x + 1;
   const auto height = static_cast<std::int64_t>(window.max.y) - window.min.y + 1;
@@ -268,10 +268,10 @@ Image EmptyImageFor(const fs::path& file, const Imf::Header& header) {
       throw InputError(fmt::format("{}: channel {} is missing", file.string(), name));
     }
   }
-  return Image(static_cast<int>(width), static_cast<int>(height));
+  return HdrImage(static_cast<int>(width), static_cast<int>(height));
 }
 
-void AddLayers(const fs::path& file, const Imf::ChannelList& channels, Image& image) {
+void AddLayers(const fs::path& file, const Imf::ChannelList& channels, HdrImage& image) {
   for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
     const std::string name = channel.name();
     if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
@@ -282,13 +282,22 @@ void AddLayers(const fs::path& file, const Imf::ChannelList& channels, Image& im
   }
 }
 
+Metadata TextsOf(const Imf::Header& header) {
+  Metadata metadata;
+  for (auto at = header.begin(); at != header.end(); ++at) {
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute());
+    if (text != nullptr) metadata[at.name()] = text->value();
+  }
+  return metadata;
+}
+
 }  // namespace
 
 void RequireBoundedExrHeader(const std::filesystem::path& file, std::int64_t longest_side) {
   HeaderReader(file, longest_side).Check();
 }
 
-void WriteExr(const fs::path& file, const Image& image, const Metadata& metadata,
+void WriteExr(const fs::path& file, const HdrImage& image, const Metadata& metadata,
               Projection projection) {
   if (const auto fault = FaultyValue(image)) {
     throw InternalError(fmt::format("{} is not written: {}", file.string(), *fault));
@@ -302,11 +311,14 @@ void WriteExr(const fs::path& file, const Image& image, const Metadata& metadata
   });
 }
 
-Image ReadExr(const fs::path& file) {
-  return Reading<Image>(file, [&] {
+HdrImage ReadExrPicture(const fs::path& file) {
+  return Reading<HdrImage>(file, [&] {
     Imf::InputFile input(file.c_str());
-    Image image = EmptyImageFor(file, input.header());
+    HdrImage image = EmptyImageFor(file, input.header());
     AddLayers(file, input.header().channels(), image);
+    image.metadata = TextsOf(input.header());
+    image.is_panorama =
+        Imf::hasEnvmap(input.header()) && Imf::envmap(input.header()) == Imf::ENVMAP_LATLONG;
     input.setFrameBuffer(FrameBufferOf(image));
     input.readPixels(0, image.height - 1);
     return image;
@@ -314,15 +326,7 @@ Image ReadExr(const fs::path& file) {
 }
 
 Metadata ReadExrMetadata(const fs::path& file) {
-  return Reading<Metadata>(file, [&] {
-    const Imf::InputFile input(file.c_str());
-    Metadata metadata;
-    for (auto at = input.header().begin(); at != input.header().end(); ++at) {
-      const auto* text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute());
-      if (text != nullptr) metadata[at.name()] = text->value();
-    }
-    return metadata;
-  });
+  return Reading<Metadata>(file, [&] { return TextsOf(Imf::InputFile(file.c_str()).header()); });
 }
 
 }  // namespace alpenglow::lut

@@ -12,12 +12,10 @@ namespace alpenglow::lut {
 /// Writes float RGB and the layers, ZIP, atomically, with the metadata as text attributes and
 /// whiteLuminance 1 (the unit is cd/m^2). Throws OutputError. If there is a FaultyValue, throws
 /// InternalError naming file, pixel and layer before it writes anything.
-void WriteExr(const std::filesystem::path& file, const Image& image, const Metadata& metadata,
+void WriteExr(const std::filesystem::path& file, const HdrImage& image, const Metadata& metadata,
               Projection projection = Projection::kCamera);
-/// Reads an EXR file as written by WriteExr (any scan-line EXR with R, G, B); every other channel
-/// becomes a layer. Throws InputError for a file that is missing, truncated, of another format, or
-/// has no R, G or B.
-[[nodiscard]] Image ReadExr(const std::filesystem::path& file);
+/// Reads an EXR file as ReadExr of the public header does, which calls this function.
+[[nodiscard]] HdrImage ReadExrPicture(const std::filesystem::path& file);
 /// Reads the text attributes of the header. Throws InputError.
 [[nodiscard]] Metadata ReadExrMetadata(const std::filesystem::path& file);
 

@@ -96,7 +96,7 @@ double GlareOfEye(double angle_rad) {
   return 0.384 * f0 + 0.478 * 20.91 / (near * near * near) + 0.138 * 72.37 / (near * near);
 }
 
-Image WithGlareOfEye(Image image, double pixel_rad) {
+HdrImage WithGlareOfEye(HdrImage image, double pixel_rad) {
   ALPENGLOW_ENSURE(pixel_rad, >, 0.0);
   // The torus is at least twice as wide as the image, so that no light wraps around.
   const auto width = std::bit_ceil(2 * static_cast<std::size_t>(image.width));

@@ -26,6 +26,6 @@ namespace alpenglow::lut {
 /// 1e-6 of the sum over all pixels. It needs two arrays of 16 bytes per element, each with four
 /// times as many elements as pixels.
 /// @param pixel_rad  angle between neighbouring pixels in the middle, > 0.
-[[nodiscard]] Image WithGlareOfEye(Image image, double pixel_rad);
+[[nodiscard]] HdrImage WithGlareOfEye(HdrImage image, double pixel_rad);
 
 }  // namespace alpenglow::lut

@@ -15,12 +15,12 @@
 namespace alpenglow::lut {
 namespace {
 
-std::string FaultAt(const Image& image, std::size_t pixel, std::string_view of, float value) {
+std::string FaultAt(const HdrImage& image, std::size_t pixel, std::string_view of, float value) {
   const auto width = static_cast<std::size_t>(image.width);
   return fmt::format("pixel ({}, {}) of {} is {}", pixel % width, pixel / width, of, value);
 }
 
-std::optional<std::string> FaultOf(const Image& image, const Channel& layer) {
+std::optional<std::string> FaultOf(const HdrImage& image, const ImageLayer& layer) {
   const bool is_distance = layer.name == kDepthChannel;
   const auto fault = std::find_if(layer.values.begin(), layer.values.end(), [&](float value) {
     return is_distance ? !(value >= 0.0F) : !std::isfinite(value);
@@ -36,13 +36,7 @@ constexpr EnumNames kStokesNames{{std::pair{StokesLayer::kQ, "stokes_q"},
 
 }  // namespace
 
-Image::Image(int image_width, int image_height) : width(image_width), height(image_height) {
-  RequireInRange(image_width, 1, kLargestImageSide, "image width");
-  RequireInRange(image_height, 1, kLargestImageSide, "image height");
-  rgb.resize(static_cast<std::size_t>(image_width) * static_cast<std::size_t>(image_height));
-}
-
-std::optional<std::string> FaultyValue(const Image& image) {
+std::optional<std::string> FaultyValue(const HdrImage& image) {
   for (std::size_t pixel = 0; pixel < image.rgb.size(); ++pixel) {
     for (std::size_t c = 0; c < 3; ++c) {
       const float value = image.rgb[pixel][c];
@@ -50,7 +44,7 @@ std::optional<std::string> FaultyValue(const Image& image) {
       return FaultAt(image, pixel, std::string("layer ") + "RGB"[c], value);
     }
   }
-  for (const Channel& layer : image.layers) {
+  for (const ImageLayer& layer : image.layers) {
     if (auto fault = FaultOf(image, layer)) return fault;
   }
   return std::nullopt;

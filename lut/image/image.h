@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
-// This header provides images: linear with layers, and developed for a display; with their
-// metadata.
+// This header provides what the public HdrImage, an image of light, does not have: its checks, the
+// image that is developed for a display, and layers of polarisation. exr.h and png.h read and write
+// images.
 //
-// exr.h and png.h read and write them.
+// Colours of light are not clamped. A colour more saturated than the display's gamut has a negative
+// channel and keeps its luminance. The red of a low sun has negative blue; the blue that ozone
+// leaves of deep twilight has negative red (100 km up, sun at -15 degrees: a hundredth of the blue,
+// and on 16 bands more often than on 4). Tone curves map such colours into the gamut
+// (tone_curve.glsl).
 //
 // Layers of images and panoramas can hold the polarisation of the light. Q is positive for light
 // that vibrates along the image's vertical rather than across it, U for light that vibrates from
 // the lower left to the upper right rather than across that direction.
 #pragma once
 
+#include <alpenglow/image.h>
+
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,44 +30,9 @@ inline constexpr int kLargestImageSide = 32768;
 /// Name of the channel of distances, which is OpenEXR's depth channel Z in a layer.
 inline constexpr const char* kDepthChannel = "depth.Z";
 
-/// A plane of floats, row 0 at the top. Values of kDepthChannel are not negative, and infinite
-/// where a ray hits nothing. Values of all other channels are finite.
-struct Channel {
-  std::string name;  // name in the EXR file: "R", "depth.Z", ...
-  std::vector<float> values;
-};
-
-/// An image in linear sRGB [cd/m^2] with, optionally, more layers of equal size.
-///
-/// Colours are not clamped. A colour more saturated than the display's gamut has a negative channel
-/// and keeps its luminance. The red of a low sun has negative blue; the blue that ozone leaves of
-/// deep twilight has negative red (100 km up, sun at -15 degrees: a hundredth of the blue, and on
-/// 16 bands more often than on 4). Tone curves map such colours into the gamut (tone_curve.glsl).
-struct Image {
-  int width = 0;
-  int height = 0;
-  std::vector<std::array<float, 3>> rgb;
-  std::vector<Channel> layers;
-
-  Image() = default;
-  /// Makes a black image. Throws InputError unless both sides are in [1, kLargestImageSide].
-  Image(int image_width, int image_height);
-  [[nodiscard]] std::array<float, 3>& at(int x, int y) {
-    return rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-               static_cast<std::size_t>(x)];
-  }
-  [[nodiscard]] const std::array<float, 3>& at(int x, int y) const {
-    return rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-               static_cast<std::size_t>(x)];
-  }
-};
-
-/// Returns a description of the first invalid value (see Channel): "pixel (3, 4) of layer lamps.R
+/// Returns a description of the first invalid value (see ImageLayer): "pixel (3, 4) of layer lamps.R
 /// is nan". Returns nullopt if all values are valid.
-[[nodiscard]] std::optional<std::string> FaultyValue(const Image& image);
-
-/// Parameters and origin of an image: name and value, written into the file's header.
-using Metadata = std::map<std::string, std::string>;
+[[nodiscard]] std::optional<std::string> FaultyValue(const HdrImage& image);
 
 /// Projection of an image: the view of a camera, or the whole sphere by longitude and latitude
 /// (OpenEXR's attribute envmap = latlong).

@@ -90,15 +90,15 @@ Look LookUnder(const ExposureRule& rule, Look look) {
   return look;
 }
 
-Look Settled(Look look, const Image& image, const PictureView& view) {
+Look Settled(Look look, const HdrImage& image, const PictureView& view) {
   look.white = Settled(look.white, image, view.projection);
   return look;
 }
 
-Image Seen(const Image& image, const Look& look, const PictureView& view) {
-  Image balanced = Balanced(image, look.white);
+HdrImage Seen(const HdrImage& image, const Look& look, const PictureView& view) {
+  HdrImage balanced = Balanced(image, look.white);
   if (!look.night_vision) return balanced;
-  Image seen = SeenByNight(std::move(balanced));
+  HdrImage seen = SeenByNight(std::move(balanced));
   return view.pixel_rad > 0.0 ? WithAcuityOfNight(std::move(seen), view.pixel_rad) : seen;
 }
 

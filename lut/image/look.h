@@ -42,11 +42,11 @@ struct PictureView {
 };
 
 /// Returns the look with the white balance of the image determined.
-[[nodiscard]] Look Settled(Look look, const Image& image, const PictureView& view = {});
+[[nodiscard]] Look Settled(Look look, const HdrImage& image, const PictureView& view = {});
 
 /// Returns an image ready for metering and developing: white-balanced and, with night vision, with
 /// the colours and acuity of the dark-adapted eye (night_vision.h). @param look  must be settled.
-[[nodiscard]] Image Seen(const Image& image, const Look& look, const PictureView& view = {});
+[[nodiscard]] HdrImage Seen(const HdrImage& image, const Look& look, const PictureView& view = {});
 
 /// Rule that determines the exposure of an image.
 struct ExposureRule {

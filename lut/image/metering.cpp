@@ -63,7 +63,7 @@ double WeightOfRow(int row, int rows, Projection projection) {
 /// Calls visit(rgb, luminance, weight) for every pixel that has light and is not part of the sun's
 /// disk.
 template <typename Visit>
-void VisitLight(const Image& image, double ignore_above_cd_per_m2, Projection projection,
+void VisitLight(const HdrImage& image, double ignore_above_cd_per_m2, Projection projection,
                 const Visit& visit) {
   for (int row = 0; row < image.height; ++row) {
     const double weight = WeightOfRow(row, image.height, projection);
@@ -80,7 +80,7 @@ double BinOf(double luminance) {
   return std::clamp((std::log2(luminance) - kLowestStop) * kBinsPerStop, 0.0, kBins - 1.0);
 }
 
-Histogram HistogramOf(const Image& image, double ignore_above_cd_per_m2, Projection projection) {
+Histogram HistogramOf(const HdrImage& image, double ignore_above_cd_per_m2, Projection projection) {
   Histogram histogram;
   VisitLight(image, ignore_above_cd_per_m2, projection,
              [&](const std::array<float, 3>&, double y, double weight) {
@@ -156,7 +156,7 @@ std::string MeterRule() {
       kLastSeen_stops, kLastSeen_stops + kFade_stops);
 }
 
-double MeterEv100(const Image& image, double ignore_above_cd_per_m2, Projection projection) {
+double MeterEv100(const HdrImage& image, double ignore_above_cd_per_m2, Projection projection) {
   const Histogram histogram = WithoutBlack(HistogramOf(image, ignore_above_cd_per_m2, projection));
   const double pixels = histogram.Sum();
   if (pixels == 0.0) return kDarkestEv100;
@@ -164,7 +164,7 @@ double MeterEv100(const Image& image, double ignore_above_cd_per_m2, Projection 
   return std::clamp(ev100, kDarkestEv100, kBrightestEv100);
 }
 
-std::array<double, 3> MeteredColour(const Image& image, double ignore_above_cd_per_m2,
+std::array<double, 3> MeteredColour(const HdrImage& image, double ignore_above_cd_per_m2,
                                     Projection projection) {
   const Histogram histogram = WithoutBlack(HistogramOf(image, ignore_above_cd_per_m2, projection));
   const double low = static_cast<double>(BinAtShare(histogram, kDarkShare));

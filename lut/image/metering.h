@@ -45,7 +45,7 @@ inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
 /// weighted by their solid angle. The result lies within [kDarkestEv100, kBrightestEv100], the
 /// limits of the camera: a night of stars by f/1.4 for 30 s at ISO 25600, and sunlit snow eight
 /// times over. Without light it is kDarkestEv100.
-[[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2,
+[[nodiscard]] double MeterEv100(const HdrImage& image, double ignore_above_cd_per_m2,
                                 Projection projection = Projection::kCamera);
 
 /// Returns the rule in words, for the metadata of output files.
@@ -53,7 +53,8 @@ inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
 
 /// Returns the mean colour of the pixels whose mean is metered, each scaled to equal luminance:
 /// linear sRGB of luminance 1. Returns white (1, 1, 1) if there is no light.
-[[nodiscard]] std::array<double, 3> MeteredColour(const Image& image, double ignore_above_cd_per_m2,
+[[nodiscard]] std::array<double, 3> MeteredColour(const HdrImage& image,
+                                                  double ignore_above_cd_per_m2,
                                                   Projection projection = Projection::kCamera);
 
 }  // namespace alpenglow::lut

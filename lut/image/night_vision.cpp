@@ -123,10 +123,10 @@ MesopicLight MesopicLightOf(double photopic_cd_per_m2, double scotopic_cd_per_m2
   return {Mixed(m, photopic_cd_per_m2, scotopic_cd_per_m2), cones / (cones + rods)};
 }
 
-Image SeenByNight(Image image) {
+HdrImage SeenByNight(HdrImage image) {
   const auto layer =
       std::find_if(image.layers.begin(), image.layers.end(),
-                   [](const Channel& channel) { return channel.name == kScotopicChannel; });
+                   [](const ImageLayer& channel) { return channel.name == kScotopicChannel; });
   if (layer == image.layers.end()) {
     throw InputError(
         fmt::format("the picture has no layer {}, which night vision needs", kScotopicChannel));
@@ -151,7 +151,7 @@ double SpreadAt(double luminance_cd_per_m2) {
   return std::sqrt(std::max(here * here - day * day, 0.0));
 }
 
-Image WithAcuityOfNight(Image image, double pixel_rad) {
+HdrImage WithAcuityOfNight(HdrImage image, double pixel_rad) {
   ALPENGLOW_ENSURE(pixel_rad, >, 0.0);
   std::vector<double> levels(image.rgb.size());
   tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t i) {

@@ -52,7 +52,7 @@ struct MesopicLight {
 
 /// Returns the image with mesopic luminance and colour. By day (every pixel over 5 cd/m^2) the
 /// image is unchanged. Throws InputError for an image without kScotopicChannel.
-[[nodiscard]] Image SeenByNight(Image image);
+[[nodiscard]] HdrImage SeenByNight(HdrImage image);
 
 /// Returns the finest visible grating [cycles a degree]; below 1e-6 cd/m^2 the value at 1e-6.
 /// @param luminance_cd_per_m2 >= 0.
@@ -65,6 +65,6 @@ struct MesopicLight {
 /// are unchanged. Spreads between those of 0, 1/2, 1, 2, ... 64 pixels are mixtures of equal
 /// variance; spreads above 64 pixels are limited to 64.
 /// @param pixel_rad  angle between neighbouring pixels in the middle, > 0.
-[[nodiscard]] Image WithAcuityOfNight(Image image, double pixel_rad);
+[[nodiscard]] HdrImage WithAcuityOfNight(HdrImage image, double pixel_rad);
 
 }  // namespace alpenglow::lut

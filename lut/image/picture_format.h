@@ -18,7 +18,7 @@ namespace alpenglow::lut {
 struct PictureFormat {
   const char* extension;  // ".exr"
   const char* name;       // "EXR"
-  void (*write_light)(const std::filesystem::path& file, const Image& image,
+  void (*write_light)(const std::filesystem::path& file, const HdrImage& image,
                       const Metadata& metadata, Projection projection);
   void (*write_colours)(const std::filesystem::path& file, const DisplayImage& image,
                         const Metadata& metadata);

@@ -36,7 +36,7 @@ struct Stops {
   }
 };
 
-std::optional<Stops> StopsOf(const Image& image) {
+std::optional<Stops> StopsOf(const HdrImage& image) {
   Stops stops{image.width, image.height, {}, 0.0F, 0.0F};
   bool any = false;
   for (const std::array<float, 3>& rgb : image.rgb) {
@@ -197,7 +197,7 @@ std::string NameOf(AgxLook look) { return kLooks.Of(look); }
 
 std::vector<std::string> AgxLookNames() { return kLooks.All(); }
 
-Image WithHighlightsRolledOff(Image image, double ev100) {
+HdrImage WithHighlightsRolledOff(HdrImage image, double ev100) {
   const auto grey = static_cast<float>(kMeterConstant / 100.0 * std::exp2(ev100));
   tbb::parallel_for(std::size_t{0}, image.rgb.size(), [&](std::size_t i) {
     std::array<float, 3>& rgb = image.rgb[i];
@@ -210,11 +210,11 @@ Image WithHighlightsRolledOff(Image image, double ev100) {
   return image;
 }
 
-Image LocallyExposed(const Image& image, double ev100, const LocalExposureOptions& options) {
+HdrImage LocallyExposed(const HdrImage& image, double ev100, const LocalExposureOptions& options) {
   RequireInRange(options.base_range_stops, 0.0, 100.0, "base_range_stops");
   RequireInRange(options.reach, 1e-4, 1.0, "reach");
   RequireInRange(options.edge_stops, 0.1, 100.0, "edge_stops");
-  Image exposed = image;
+  HdrImage exposed = image;
   const std::optional<Stops> stops = StopsOf(image);
   if (!stops) return exposed;
   const std::vector<float> base = BaseOf(*stops, options);

@@ -333,7 +333,7 @@ template <typename Real>
 
 /// Returns the image with compressed highlights.
 /// @param ev100  the exposure that prints 12.5 / 100 2^ev100 cd/m^2 as middle grey.
-[[nodiscard]] Image WithHighlightsRolledOff(Image image, double ev100);
+[[nodiscard]] HdrImage WithHighlightsRolledOff(HdrImage image, double ev100);
 
 struct LocalExposureOptions {
   double base_range_stops = 5.0;  // range to which the base is compressed; never expanded
@@ -343,7 +343,7 @@ struct LocalExposureOptions {
 
 /// Returns the image with a gain per pixel. The gain is 1 where the base has the luminance that
 /// `ev100` prints as middle grey. Colours keep their hue. Pixels without light are unchanged.
-[[nodiscard]] Image LocallyExposed(const Image& image, double ev100,
-                                   const LocalExposureOptions& options = {});
+[[nodiscard]] HdrImage LocallyExposed(const HdrImage& image, double ev100,
+                                      const LocalExposureOptions& options = {});
 
 }  // namespace alpenglow::lut

@@ -143,7 +143,7 @@ double CameraWhite(double metered_ev100) {
          (kPerMired / kDaylight_k + night * (kPerMired / kNight_k - kPerMired / kDaylight_k));
 }
 
-WhiteBalance Settled(const WhiteBalance& white, const Image& image, Projection projection) {
+WhiteBalance Settled(const WhiteBalance& white, const HdrImage& image, Projection projection) {
   constexpr double kWarmest_k = 3000.0, kCoolest_k = 7000.0;
   if (!white.IsOfPicture() || white.kelvin) return white;
   if (white.kind == WhiteBalance::Kind::kCamera)
@@ -165,7 +165,7 @@ Matrix3 BalancingMatrix(const WhiteBalance& white) {
   return Product(LinearSrgbFromXyz(), Product(kXyzFromCones, adapted));
 }
 
-Image Balanced(Image image, const WhiteBalance& white) {
+HdrImage Balanced(HdrImage image, const WhiteBalance& white) {
   if (white.IsDaylight()) return image;
   const Matrix3 matrix = BalancingMatrix(white);
   tbb::parallel_for(std::size_t{0}, image.rgb.size(), [&](std::size_t i) {

@@ -69,7 +69,7 @@ inline constexpr double kCoolestWhite_k = 25000.0;
 
 /// Returns the white balance with the kelvins of auto or camera for an image; other kinds are
 /// unchanged.
-[[nodiscard]] WhiteBalance Settled(const WhiteBalance& white, const Image& image,
+[[nodiscard]] WhiteBalance Settled(const WhiteBalance& white, const HdrImage& image,
                                    Projection projection);
 
 /// Returns the matrix from linear sRGB of the scene to linear sRGB as shown. Throws InternalError
@@ -77,6 +77,6 @@ inline constexpr double kCoolestWhite_k = 25000.0;
 [[nodiscard]] Matrix3 BalancingMatrix(const WhiteBalance& white);
 
 /// Returns the balanced image; its layers are unchanged. With daylight the image is unchanged.
-[[nodiscard]] Image Balanced(Image image, const WhiteBalance& white);
+[[nodiscard]] HdrImage Balanced(HdrImage image, const WhiteBalance& white);
 
 }  // namespace alpenglow::lut

@@ -97,7 +97,7 @@ struct LayerPlace {
   std::size_t first_channel;
 };
 
-std::vector<LayerPlace> AddPanoramaLayers(const std::vector<StokesLayer>& layers, Image& image) {
+std::vector<LayerPlace> AddPanoramaLayers(const std::vector<StokesLayer>& layers, HdrImage& image) {
   std::vector<LayerPlace> places;
   for (const StokesLayer layer : layers) {
     places.push_back({layer, image.layers.size()});
@@ -109,9 +109,9 @@ std::vector<LayerPlace> AddPanoramaLayers(const std::vector<StokesLayer>& layers
 
 /// Writes the values of the layers in a pixel. @param q, u  linear sRGB.
 void SetLayers(const std::vector<LayerPlace>& places, std::size_t pixel,
-               const std::array<float, 3>& q, const std::array<float, 3>& u, Image& image) {
+               const std::array<float, 3>& q, const std::array<float, 3>& u, HdrImage& image) {
   for (const LayerPlace& place : places) {
-    Channel* channel = &image.layers[place.first_channel];
+    ImageLayer* channel = &image.layers[place.first_channel];
     if (place.layer == StokesLayer::kPolarisation) {
       const auto values = DegreeAndAngle(Luminance(image.rgb[pixel]), Luminance(q), Luminance(u));
       for (std::size_t i = 0; i < values.size(); ++i) channel[i].values[pixel] = values[i];
@@ -225,7 +225,7 @@ std::vector<Bands<float>> SharesOf(const std::vector<DiskPiece>& pieces,
 }
 
 void DrawSunDisk(const SingleScattering<float>& air, const PanoramaSettings& settings,
-                 const PanoramaGrid& grid, const std::vector<float>& srgb, Image& image) {
+                 const PanoramaGrid& grid, const std::vector<float>& srgb, HdrImage& image) {
   const std::vector<DiskPiece> pieces = PiecesOfDisk(grid, settings.sun);
   const std::vector<Bands<float>> shares = SharesOf(pieces, air.medium().wavelengths_nm);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -249,7 +249,7 @@ constexpr std::array<Letter, 4> kCompassLetters{{
 }};
 
 // Paints the letters twice as bright as the brightest pixel of the middle row, 10 degrees high.
-void PaintCompass(const PanoramaGrid& grid, Image& image) {
+void PaintCompass(const PanoramaGrid& grid, HdrImage& image) {
   float ink = 1e-3F;
   for (int x = 0; x < grid.width; ++x) ink = std::max(ink, 2.0F * image.at(x, grid.height / 2)[1]);
   constexpr double kCell_rad = 2.0 * kRadiansPerDegree;
@@ -335,10 +335,10 @@ double CentreAzimuth(PanoramaOrientation orientation) {
   throw InternalError("an orientation without a centre");
 }
 
-Image RenderPanorama(const SingleScattering<float>& air,
+HdrImage RenderPanorama(const SingleScattering<float>& air,
                      const MultipleScattering& multiple_scattering,
                      const PanoramaSettings& settings, const std::function<void()>& row_done) {
-  Image image(settings.width, settings.height);
+  HdrImage image(settings.width, settings.height);
   const double mu_s = std::sin(SunForAir(settings.sun).elevation_rad());
   const SkyView view = SkyView(air, multiple_scattering, settings.altitude_m, mu_s,
                                settings.view_size.value_or(FineSize(

@@ -84,7 +84,7 @@ struct PanoramaSettings {
 /// relative to it or to 1e-4 of the brightest pixel: rms below 0.1 % with the sun over 10 degrees,
 /// below 0.3 % down to -10. Throws InputError for a size outside [1, kLargestImageSide].
 /// @param row_done  called once per row, from any thread.
-[[nodiscard]] Image RenderPanorama(
+[[nodiscard]] HdrImage RenderPanorama(
     const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
     const PanoramaSettings& settings, const std::function<void()>& row_done = [] {});
 

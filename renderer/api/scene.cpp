@@ -7,7 +7,6 @@
 
 #include "atmosphere/api/conversions.h"
 #include "atmosphere/math/constants.h"
-#include "lut/api/conversions.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/render.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
@@ -94,7 +93,7 @@ HdrImage Scene::Render(const UtcTime& time, const StillOptions& options) const {
   settings.samples_per_pixel = options.samples_per_pixel;
   settings.noise = options.noise;
   settings.layers = renderer::LayersFromNames(options.layers);
-  HdrImage still = HdrImageFrom(state_->renderer.Render(RequireValid(time), settings));
+  HdrImage still = state_->renderer.Render(RequireValid(time), settings);
   still.is_panorama = state_->scene.camera.IsPanorama();
   still.metadata = renderer::PictureMetadata(state_->scene, state_->hashes, settings);
   still.metadata["alpenglow.utc"] = TextFromTime(time);

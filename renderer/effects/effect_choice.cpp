@@ -45,8 +45,8 @@ bool IsWithin(const PreviewChange& change, double max_error) {
 }
 
 /// Returns the first pixels of a preview's picture.
-Image FirstPixels(const Image& image, std::size_t count) {
-  Image first(static_cast<int>(count), 1);
+HdrImage FirstPixels(const HdrImage& image, std::size_t count) {
+  HdrImage first(static_cast<int>(count), 1);
   std::copy_n(image.rgb.begin(), count, first.rgb.begin());
   return first;
 }
@@ -176,13 +176,13 @@ double PixelChange(const std::array<float, 3>& a, const std::array<float, 3>& b,
   return Norm(difference) / std::max(0.5 * (Norm(a) + Norm(b)), floor_cd_per_m2);
 }
 
-double ChangeFloor(const Image& reference) {
+double ChangeFloor(const HdrImage& reference) {
   constexpr double kStepsBelowMiddleGrey = 4.0;
   const double ev100 = MeterEv100(reference, kSunDiskLuminance_cd_per_m2);
   return kMeterConstant / 100.0 * std::exp2(ev100 - kStepsBelowMiddleGrey);
 }
 
-ErrorStatistics ChangeOf(const Image& reference, const Image& other) {
+ErrorStatistics ChangeOf(const HdrImage& reference, const HdrImage& other) {
   ALPENGLOW_ENSURE(reference.rgb.size(), ==, other.rgb.size());
   const double floor = ChangeFloor(reference);
   std::vector<double> changes;

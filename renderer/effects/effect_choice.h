@@ -54,10 +54,10 @@ namespace alpenglow::renderer {
                                  double floor_cd_per_m2);
 
 /// Returns the floor of a picture [cd/m^2]; the sun's disk is excluded from metering.
-[[nodiscard]] double ChangeFloor(const Image& reference);
+[[nodiscard]] double ChangeFloor(const HdrImage& reference);
 
 /// Returns the changes d of all pixels. Throws InternalError for pictures of different sizes.
-[[nodiscard]] ErrorStatistics ChangeOf(const Image& reference, const Image& other);
+[[nodiscard]] ErrorStatistics ChangeOf(const HdrImage& reference, const HdrImage& other);
 
 struct PixelPlace {
   int x, y;
@@ -106,7 +106,7 @@ class Stopwatch {
 
 /// The preview's pixels, group after group, as a picture of one row, and the rendering time.
 struct PreviewPicture {
-  Image image;
+  HdrImage image;
   double seconds = 0.0;
 };
 

@@ -107,14 +107,14 @@ const std::vector<LayerKind>& LayerKinds() {
   return kKinds;
 }
 
-const std::vector<float>* FindLayer(const Image& image, std::string_view name) {
-  for (const Channel& channel : image.layers) {
+const std::vector<float>* FindLayer(const HdrImage& image, std::string_view name) {
+  for (const ImageLayer& channel : image.layers) {
     if (channel.name == name) return &channel.values;
   }
   return nullptr;
 }
 
-const std::vector<float>& LayerOf(const Image& image, std::string_view name) {
+const std::vector<float>& LayerOf(const HdrImage& image, std::string_view name) {
   if (const std::vector<float>* layer = FindLayer(image, name)) return *layer;
   throw InternalError("the renderer's picture has no layer " + std::string(name));
 }
@@ -123,7 +123,7 @@ const std::vector<float>& LayerOf(const Image& image, std::string_view name) {
 struct LuminanceRange {
   float least, most;
 };
-LuminanceRange RangeAround(const Image& image, const std::vector<float>& layer, int x, int y) {
+LuminanceRange RangeAround(const HdrImage& image, const std::vector<float>& layer, int x, int y) {
   LuminanceRange range{INFINITY, -INFINITY};
   for (int row = std::max(y - 1, 0); row <= std::min(y + 1, image.height - 1); ++row) {
     for (int column = std::max(x - 1, 0); column <= std::min(x + 1, image.width - 1); ++column) {
@@ -136,7 +136,7 @@ LuminanceRange RangeAround(const Image& image, const std::vector<float>& layer, 
 
 // Returns whether lamp light changes so much next to a pixel that an offset of a tenth of a pixel
 // changes it by a hundredth.
-bool IsEdgeOfLamps(const Image& image, const std::vector<float>& lamps, int x, int y,
+bool IsEdgeOfLamps(const HdrImage& image, const std::vector<float>& lamps, int x, int y,
                    float floor_cd_per_m2) {
   constexpr float kStep = 0.2F;
   const LuminanceRange light = RangeAround(image, lamps, x, y);
@@ -248,13 +248,13 @@ bool PixelWriter::AsksForMiddle() const {
                      [](const Plane& plane) { return plane.kind.of_middle != nullptr; });
 }
 
-Image PixelWriter::Take() { return std::move(image_); }
+HdrImage PixelWriter::Take() { return std::move(image_); }
 
 std::vector<PictureLayer> LayersOfEdges() {
   return {PictureLayer::kDepth, PictureLayer::kSunVisibility, PictureLayer::kLamps};
 }
 
-std::vector<bool> EdgesOf(const Image& reference) {
+std::vector<bool> EdgesOf(const HdrImage& reference) {
   constexpr float kNearer = 1.1F;
   constexpr float kShade = 0.1F;
   const std::vector<float>& depth = LayerOf(reference, kDepthChannel);
@@ -276,7 +276,7 @@ std::vector<bool> EdgesOf(const Image& reference) {
   return edges;
 }
 
-ErrorStatistics DifferenceOf(const Image& reference, const Image& painted) {
+ErrorStatistics DifferenceOf(const HdrImage& reference, const HdrImage& painted) {
   ALPENGLOW_ENSURE(reference.rgb.size(), ==, painted.rgb.size());
   const std::vector<bool> edges = EdgesOf(reference);
   const double floor = ChangeFloor(reference);

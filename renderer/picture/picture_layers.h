@@ -122,7 +122,7 @@ class PixelWriter {
   /// Writes the layers that describe the surface in the middle of the pixel.
   void WriteMiddle(int x, int y, const Hit& hit);
 
-  [[nodiscard]] Image Take();
+  [[nodiscard]] HdrImage Take();
   /// Returns the ray counts of the pixels written so far.
   [[nodiscard]] RayCount rays() const {
     return {rays_, least_ <= most_ ? least_.load() : 0, most_};
@@ -138,7 +138,7 @@ class PixelWriter {
   void Count(std::uint64_t rays);
 
   const BandColour& colour_;
-  Image image_;
+  HdrImage image_;
   std::vector<Plane> planes_;
   std::atomic<std::uint64_t> rays_{0}, least_{~std::uint64_t{0}}, most_{0};
 };
@@ -148,12 +148,12 @@ class PixelWriter {
 [[nodiscard]] std::vector<PictureLayer> LayersOfEdges();
 
 /// Returns which pixels of the renderer's picture are at an edge, row by row.
-[[nodiscard]] std::vector<bool> EdgesOf(const Image& reference);
+[[nodiscard]] std::vector<bool> EdgesOf(const HdrImage& reference);
 
 /// Returns the differences of a drawn picture from the reference, of all pixels that are not at an
 /// edge.
 /// @param reference solution  the renderer's, with LayersOfEdges(). Throws InternalError if the
 ///   sizes differ or all pixels are at edges.
-[[nodiscard]] ErrorStatistics DifferenceOf(const Image& reference, const Image& painted);
+[[nodiscard]] ErrorStatistics DifferenceOf(const HdrImage& reference, const HdrImage& painted);
 
 }  // namespace alpenglow::renderer

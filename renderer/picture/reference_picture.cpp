@@ -79,7 +79,7 @@ void ReferencePicture::Show(const View& view) {
   RequestStage(0);
 }
 
-std::optional<Image> ReferencePicture::Poll() {
+std::optional<HdrImage> ReferencePicture::Poll() {
   std::optional<std::optional<Made>> taken = job_.Poll();
   if (!taken || !*taken || (*taken)->stop.stop_requested()) return std::nullopt;
   samples_ = (*taken)->samples;

@@ -47,7 +47,7 @@ class ReferencePicture {
   void Show(const View& view);
   /// Returns a new picture of the view shown last, if one is ready. Rethrows exceptions of the
   /// rendering.
-  [[nodiscard]] std::optional<Image> Poll();
+  [[nodiscard]] std::optional<HdrImage> Poll();
 
   /// Number of rays per pixel of the best picture of this view so far; 0: none yet.
   [[nodiscard]] int samples() const { return samples_; }
@@ -61,7 +61,7 @@ class ReferencePicture {
     std::stop_token stop;
   };
   struct Made {
-    Image image;
+    HdrImage image;
     int samples;
     std::stop_token stop;
   };

@@ -97,7 +97,7 @@ class TileRenderer {
   [[nodiscard]] CountedPicture Picture() const;
   /// Returns single pixels as an image of one row, with a fixed number of rays per pixel and
   /// without layers.
-  [[nodiscard]] Image Pixels(const std::vector<PixelPlace>& places) const;
+  [[nodiscard]] HdrImage Pixels(const std::vector<PixelPlace>& places) const;
 
  private:
   /// Adds the rows of a picture with a fixed number of rays per pixel.
@@ -115,7 +115,7 @@ class TileRenderer {
   const FrameContext& frame_;
 };
 
-Image TileRenderer::Pixels(const std::vector<PixelPlace>& places) const {
+HdrImage TileRenderer::Pixels(const std::vector<PixelPlace>& places) const {
   const int count = static_cast<int>(places.size());
   const int rays = frame_.settings().samples_per_pixel;
   PixelWriter writer(frame_.scene().colour(), count, 1, {});
@@ -331,8 +331,8 @@ double SceneRenderer::Illuminance(const CameraSample& camera_sample) const {
                                LightingAt(*scene_, observer));
 }
 
-Image SceneRenderer::Render(const CameraSample& camera_sample,
-                            const RenderSettings& settings) const {
+HdrImage SceneRenderer::Render(const CameraSample& camera_sample,
+                               const RenderSettings& settings) const {
   return RenderCounted(camera_sample, settings).image;
 }
 
@@ -368,7 +368,7 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
   for (const auto& group : preview.groups) places.insert(places.end(), group.begin(), group.end());
   const auto timed = [&](const FrameContext& of) {
     const Stopwatch watch;
-    Image image = TileRenderer(of).Pixels(places);
+    HdrImage image = TileRenderer(of).Pixels(places);
     return PreviewPicture{std::move(image), watch.seconds()};
   };
   preview.render = [&](EffectSet effects) { return timed(with(effects)); };

@@ -100,13 +100,13 @@ class PreparedScene;
 
 /// A picture and its ray counts.
 struct CountedPicture {
-  Image image;
+  HdrImage image;
   RayCount rays;
 };
 
 /// A picture rendered with the effects that the scene needs.
 struct ChosenPicture {
-  Image image;
+  HdrImage image;
   RayCount rays;
   EffectChoice choice;
 };
@@ -125,8 +125,8 @@ class SceneRenderer {
   /// Returns the picture as linear sRGB in cd/m^2. The bytes do not depend on the number of
   /// threads. Throws InputError for a size out of [1, 16384] and for an eye at an impossible place,
   /// RenderingStopped when settings.stop requests it; stops early when Interrupted().
-  [[nodiscard]] Image Render(const CameraSample& camera_sample,
-                             const RenderSettings& settings) const;
+  [[nodiscard]] HdrImage Render(const CameraSample& camera_sample,
+                                const RenderSettings& settings) const;
   [[nodiscard]] CountedPicture RenderCounted(const CameraSample& camera_sample,
                                              const RenderSettings& settings) const;
 

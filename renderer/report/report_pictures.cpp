@@ -72,7 +72,7 @@ UtcTime InstantOf(std::size_t r) {
   return InstantFromText(kSceneTexts[r].time, {range.place, range.zone, range.time});
 }
 
-std::vector<double> ChangesOf(const Image& reference, const Image& image) {
+std::vector<double> ChangesOf(const HdrImage& reference, const HdrImage& image) {
   const double floor = ChangeFloor(reference);
   std::vector<double> changes;
   for (std::size_t i = 0; i < image.rgb.size(); ++i)
@@ -183,7 +183,7 @@ class PicturesTopic {
   struct ReferenceSceneCase {
     std::shared_ptr<const SceneRenderer> renderer;
     UtcTime instant;
-    Image reference{};
+    HdrImage reference{};
     double frame_s = 0.0;  // time to prepare a picture
   };
 

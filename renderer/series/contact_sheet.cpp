@@ -104,7 +104,7 @@ class Sheet {
 };
 
 /// Returns the mean of the pixels [x0, x1) x [y0, y1).
-std::array<float, 3> Mean(const Image& image, int x0, int x1, int y0, int y1) {
+std::array<float, 3> Mean(const HdrImage& image, int x0, int x1, int y0, int y1) {
   std::array<double, 3> sum = {};
   for (int y = y0; y < y1; ++y) {
     for (int x = x0; x < x1; ++x) {
@@ -118,11 +118,11 @@ std::array<float, 3> Mean(const Image& image, int x0, int x1, int y0, int y1) {
 
 }  // namespace
 
-Image Reduced(const Image& image, int width) {
+HdrImage Reduced(const HdrImage& image, int width) {
   const int columns = std::min(width, image.width);
   const int rows = std::max(
       1, static_cast<int>(std::lround(static_cast<double>(image.height) * columns / image.width)));
-  Image reduced(columns, rows);
+  HdrImage reduced(columns, rows);
   for (int y = 0; y < rows; ++y) {
     const auto y0 = static_cast<int>(static_cast<std::int64_t>(y) * image.height / rows);
     const auto y1 = static_cast<int>(static_cast<std::int64_t>(y + 1) * image.height / rows);

@@ -14,7 +14,7 @@ inline constexpr int kThumbnailWidth = 320;
 
 /// Returns the picture with its width reduced to at most `width`, with pixels averaged in linear
 /// light and without layers. Pictures that are narrow enough are returned unchanged.
-[[nodiscard]] Image Reduced(const Image& image, int width);
+[[nodiscard]] HdrImage Reduced(const HdrImage& image, int width);
 
 struct Thumbnail {
   DisplayImage image;

@@ -119,7 +119,7 @@ SeriesExposure::SeriesExposure(const SeriesSource& source, const std::vector<Fra
   }
 }
 
-PictureView SeriesExposure::ViewOf(const Frame& frame, const Image& image) const {
+PictureView SeriesExposure::ViewOf(const Frame& frame, const HdrImage& image) const {
   const Projection projection = source_.ProjectionOf(frame);
   const double across =
       projection == Projection::kCamera ? 2.0 * std::tan(0.5 * source_.FovOf(frame)) : 2.0 * kPi;
@@ -129,7 +129,7 @@ PictureView SeriesExposure::ViewOf(const Frame& frame, const Image& image) const
 const SeriesExposure::Reading& SeriesExposure::ReadingOf(const Frame& frame) {
   const auto known = readings_.find(frame.number);
   if (known != readings_.end()) return known->second;
-  const Image preview = source_.preview(frame);
+  const HdrImage preview = source_.preview(frame);
   const Look look = Settled(output_.look, preview, ViewOf(frame, preview));
   Reading reading{Metered(frame, preview, look), std::nullopt};
   if (look.white.kelvin) reading.white_mired = kPerMired / *look.white.kelvin;
@@ -156,7 +156,7 @@ double SeriesExposure::AdaptedEv100(const Frame& frame, int frames_per_node) {
   return adapted;
 }
 
-Look SeriesExposure::LookOf(const Frame& frame, const Image& image, bool rendered) {
+Look SeriesExposure::LookOf(const Frame& frame, const HdrImage& image, bool rendered) {
   if (!smooth_mired_) return Settled(output_.look, image, ViewOf(frame, image));
   Look look = output_.look;
   if (!rendered) look.white.kelvin = KeptWhite(frame);
@@ -172,12 +172,13 @@ std::optional<double> SeriesExposure::KeptWhite(const Frame& frame) const {
   return ParseNumber(kelvin->second);
 }
 
-double SeriesExposure::Metered(const Frame& frame, const Image& image, const Look& look) const {
+double SeriesExposure::Metered(const Frame& frame, const HdrImage& image, const Look& look) const {
   const PictureView view = ViewOf(frame, image);
   return MeterEv100(lut::Seen(image, look, view), kSunDiskLuminance_cd_per_m2, view.projection);
 }
 
-Development SeriesExposure::DevelopmentOf(const Frame& frame, const Image& image, bool rendered) {
+Development SeriesExposure::DevelopmentOf(const Frame& frame, const HdrImage& image,
+                                          bool rendered) {
   const Look look = LookOf(frame, image, rendered);
   const ExposureRule& rule = output_.exposure;
   std::string words = RuleInWords(rule);
@@ -210,7 +211,7 @@ std::optional<double> SeriesExposure::KeptEv100(const Frame& frame, const Look& 
   return ParseNumber(kept.at(kEv100Key));
 }
 
-Image SeriesExposure::Seen(const Frame& frame, const Image& image, const Look& look) const {
+HdrImage SeriesExposure::Seen(const Frame& frame, const HdrImage& image, const Look& look) const {
   const PictureView view = ViewOf(frame, image);
   if (!output_.glare) return lut::Seen(image, look, view);
   return lut::Seen(WithGlareOfEye(image, view.pixel_rad), look, view);

@@ -79,11 +79,11 @@ class SeriesExposure {
   /// Returns the development of a frame.
   /// @param rendered  false: its file existed before, and the values that it stores are used if
   ///   this run would develop it in the same way.
-  [[nodiscard]] Development DevelopmentOf(const Frame& frame, const Image& image, bool rendered);
+  [[nodiscard]] Development DevelopmentOf(const Frame& frame, const HdrImage& image, bool rendered);
 
   /// Returns the picture before tone mapping: with the eye's glare if requested, white-balanced,
   /// and at night as the eye perceives it.
-  [[nodiscard]] Image Seen(const Frame& frame, const Image& image, const Look& look) const;
+  [[nodiscard]] HdrImage Seen(const Frame& frame, const HdrImage& image, const Look& look) const;
 
  private:
   /// Meter reading of a small picture of a frame.
@@ -92,7 +92,7 @@ class SeriesExposure {
     std::optional<double> white_mired;  // for the white balances auto and camera
   };
 
-  [[nodiscard]] PictureView ViewOf(const Frame& frame, const Image& image) const;
+  [[nodiscard]] PictureView ViewOf(const Frame& frame, const HdrImage& image) const;
   /// Returns the reading of a spline node. Its small picture is rendered once for both splines.
   [[nodiscard]] const Reading& ReadingOf(const Frame& frame);
   /// Returns the EV to which the eye is adapted. It depends only on the nodes within the preceding
@@ -101,9 +101,9 @@ class SeriesExposure {
   /// Returns the look with its white balance resolved: from the picture itself or, in a film, from
   /// the spline over mireds, in which equal steps look equal. An existing frame stores its white
   /// balance and needs no small picture.
-  [[nodiscard]] Look LookOf(const Frame& frame, const Image& image, bool rendered);
+  [[nodiscard]] Look LookOf(const Frame& frame, const HdrImage& image, bool rendered);
   [[nodiscard]] std::optional<double> KeptWhite(const Frame& frame) const;
-  [[nodiscard]] double Metered(const Frame& frame, const Image& image, const Look& look) const;
+  [[nodiscard]] double Metered(const Frame& frame, const HdrImage& image, const Look& look) const;
   /// Returns the EV100 stored in an existing frame if this run would expose and develop it in the
   /// same way; it needs no small picture.
   [[nodiscard]] std::optional<double> KeptEv100(const Frame& frame, const Look& look,

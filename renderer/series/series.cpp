@@ -216,7 +216,7 @@ class Series {
  private:
   void Write(const Frame& frame, const NotedPicture& picture, const Development& development,
              bool rendered) {
-    const Image& image = picture.image;
+    const HdrImage& image = picture.image;
     Metadata metadata = FrameMetadata(source_, output_, frame, RecordOfFrame(frame), development);
     metadata.insert(picture.notes.begin(), picture.notes.end());
     const fs::path exr = output_.name.Picture(frame.number);
@@ -238,16 +238,16 @@ class Series {
   [[nodiscard]] DisplayImage Shown(const Frame& frame) const {
     if (output_.png) return ReadPng(output_.name.Png(frame.number));
     const Development& development = developments_.at(frame.number);
-    const Image image = ReadExr(output_.name.Picture(frame.number));
+    const HdrImage image = ReadExr(output_.name.Picture(frame.number));
     return Develop(exposure_.Seen(frame, image, development.look), development.ev100,
                    development.look);
   }
 
-  void AddThumbnail(const Frame& frame, const Image& image, const Development& development) {
+  void AddThumbnail(const Frame& frame, const HdrImage& image, const Development& development) {
     const FrameRecord& record = RecordOfFrame(frame);
     const auto* const local = std::get_if<std::string>(&record.At("local_time"));
     const std::string time = (local ? *local : FormatUtc(frame.instant)).substr(11, 5);
-    const Image small = Reduced(exposure_.Seen(frame, image, development.look), kThumbnailWidth);
+    const HdrImage small = Reduced(exposure_.Seen(frame, image, development.look), kThumbnailWidth);
     thumbnails_.push_back({Develop(small, development.ev100, development.look),
                            fmt::format("{} {:+.1f}", time, *record.Number("sun_elevation_deg"))});
   }

@@ -25,10 +25,10 @@ namespace alpenglow::renderer {
 /// A picture with notes: values found during rendering. Notes do not identify the pixels; they are
 /// stored in the file in addition to its settings, and kept when the picture is developed again.
 struct NotedPicture {
-  NotedPicture(Image picture, Metadata found = {})  // NOLINT: implicit, notes are optional
+  NotedPicture(HdrImage picture, Metadata found = {})  // NOLINT: implicit, notes are optional
       : image(std::move(picture)), notes(std::move(found)) {}
 
-  Image image;
+  HdrImage image;
   Metadata notes;  // names begin with kNotePrefix
 };
 inline constexpr const char* kNotePrefix = "alpenglow.note.";
@@ -69,7 +69,7 @@ struct SeriesSource {
   double fov_rad = 0.0;                         // without a path
   /// Returns a small picture of a frame, for the meter of a series (frame_exposure.h); without it
   /// each frame is metered by itself.
-  std::function<Image(const Frame&)> preview = {};
+  std::function<HdrImage(const Frame&)> preview = {};
 
   [[nodiscard]] Projection ProjectionOf(const Frame& frame) const;
   [[nodiscard]] double FovOf(const Frame& frame) const {

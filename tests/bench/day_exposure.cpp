@@ -45,7 +45,7 @@ constexpr double kTooLarge = 0.03, kSame = 1e-3;
 
 struct Minute {
   Frame frame;
-  Image picture;
+  HdrImage picture;
   double lux = 0.0;    // on level ground
   double light = 0.0;  // [cd/m^2]
   double sun_deg = 0.0, moon_deg = 0.0;
@@ -57,7 +57,7 @@ struct Rule {
   bool is_smooth;  // over two minutes, as in a series
 };
 
-double MeanLuminance(const Image& picture) {
+double MeanLuminance(const HdrImage& picture) {
   double sum = 0.0, pixels = 0.0;
   for (const std::array<float, 3>& rgb : picture.rgb) {
     const double luminance = tests::Luminance(rgb);
@@ -69,8 +69,8 @@ double MeanLuminance(const Image& picture) {
 }
 
 /// Returns the mean display light [0, 1] before rounding to codes.
-double MeanDisplayLight(const Image& picture, double ev100, const Look& look) {
-  const Image shown = look.rolls_off ? WithHighlightsRolledOff(picture, ev100) : picture;
+double MeanDisplayLight(const HdrImage& picture, double ev100, const Look& look) {
+  const HdrImage shown = look.rolls_off ? WithHighlightsRolledOff(picture, ev100) : picture;
   double sum = 0.0;
   for (const std::array<float, 3>& rgb : shown.rgb) {
     const Rgb<float> light =
@@ -131,7 +131,7 @@ std::vector<double> ExposuresOf(const std::vector<Minute>& day, const Rule& rule
 /// Returns the display light of a grey picture of equal mean luminance.
 double LawOf(const Minute& minute, const Rule& rule, const Look& look) {
   const auto light = static_cast<float>(minute.light);
-  Image grey(1, 1);
+  HdrImage grey(1, 1);
   grey.rgb[0] = {light, light, light};
   const double ev100 =
       rule.rule.kind == ExposureRule::Kind::kIncident

@@ -15,14 +15,14 @@ namespace alpenglow::renderer {
 namespace {
 
 struct Timed {
-  Image image;
+  HdrImage image;
   double seconds;
 };
 
 Timed Render(const SceneRenderer& renderer, const EffectScene& scene,
              const RenderSettings& settings) {
   const Stopwatch watch;
-  Image image = renderer.Render(scene.instant, settings);
+  HdrImage image = renderer.Render(scene.instant, settings);
   return {std::move(image), watch.seconds()};
 }
 

@@ -194,7 +194,7 @@ class Picture {
     }
     return best;
   }
-  [[nodiscard]] Image Read() const { return target_.Read(); }
+  [[nodiscard]] HdrImage Read() const { return target_.Read(); }
 
  private:
   void UploadView(const View& view) const {
@@ -224,7 +224,7 @@ class Picture {
   GlVertexArray no_vertices_;
 };
 
-void PrintErrors(const Image& image, const std::vector<double>& reference) {
+void PrintErrors(const HdrImage& image, const std::vector<double>& reference) {
   std::vector<double> errors;
   double sum = 0.0;
   for (int y = 0; y < kHeight; ++y) {

@@ -34,10 +34,10 @@ namespace alpenglow::viewer {
 namespace {
 
 /// Returns the PixelChange of each pixel in grey; pixels that are left out are blue.
-Image DifferencePicture(const Image& reference, const Image& painted) {
+HdrImage DifferencePicture(const HdrImage& reference, const HdrImage& painted) {
   const std::vector<bool> edges = EdgesOf(reference);
   const double floor = ChangeFloor(reference);
-  Image picture(reference.width, reference.height);
+  HdrImage picture(reference.width, reference.height);
   for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
     const auto change = static_cast<float>(PixelChange(reference.rgb[i], painted.rgb[i], floor));
     picture.rgb[i] = edges[i] ? std::array{0.0F, 0.0F, 1.0F} : std::array{change, change, change};
@@ -45,15 +45,15 @@ Image DifferencePicture(const Image& reference, const Image& painted) {
   return picture;
 }
 
-Image ReferenceOf(const ParityView& view, const RenderSettings& settings,
-                  const std::filesystem::path& file) {
+HdrImage ReferenceOf(const ParityView& view, const RenderSettings& settings,
+                     const std::filesystem::path& file) {
   if (std::filesystem::exists(file)) return ReadExr(file);
-  Image reference = SceneRenderer(view.scene).Render(view.instant, settings);
+  HdrImage reference = SceneRenderer(view.scene).Render(view.instant, settings);
   WriteExr(file, reference, {});
   return reference;
 }
 
-Image PaintedOf(const ParityView& view, const RenderSettings& settings) {
+HdrImage PaintedOf(const ParityView& view, const RenderSettings& settings) {
   const SceneGround ground = LoadGround(view.scene);
   CameraPose eye{view.scene.place, view.scene.camera.heading_rad, view.scene.camera.pitch_rad,
                  view.scene.camera.roll_rad, view.scene.camera.fov_rad};
@@ -65,7 +65,7 @@ Image PaintedOf(const ParityView& view, const RenderSettings& settings) {
   return painter.picture().Read();
 }
 
-DisplayImage TenfoldGrey(const Image& difference) {
+DisplayImage TenfoldGrey(const HdrImage& difference) {
   DisplayImage grey{difference.width, difference.height, {}};
   for (const auto& rgb : difference.rgb) {
     for (const float value : rgb)
@@ -84,12 +84,12 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings,
         fmt::format(",{},", views).find(fmt::format(",{},", number)) == std::string::npos)
       continue;
     const std::filesystem::path file = folder / fmt::format("reference-{}.exr", number);
-    const Image reference = ReferenceOf(view, settings, file);
+    const HdrImage reference = ReferenceOf(view, settings, file);
     WritePng(folder / fmt::format("reference-{}.png", number),
              Develop(reference, MeterEv100(reference, kSunDiskLuminance_cd_per_m2),
                      {.curve = ToneCurve::kAgx}),
              {});
-    const Image painted = PaintedOf(view, settings);
+    const HdrImage painted = PaintedOf(view, settings);
     WriteExr(folder / fmt::format("painted-{}.exr", number), painted, {});
     WritePng(folder / fmt::format("painted-{}.png", number),
              Develop(painted, MeterEv100(reference, kSunDiskLuminance_cd_per_m2),

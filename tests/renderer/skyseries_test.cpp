@@ -208,7 +208,7 @@ TEST_F(Skyseries, ListsAndTimesOfAPlaceAgreeToTheSecond) {
 TEST_F(Skyseries, AStillIsASeriesOfOne) {
   const Outcome outcome = Run(SmallStill() + " --png --aov depth,normal");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
-  const Image image = ReadExr(folder_ / "still.exr");
+  const HdrImage image = ReadExr(folder_ / "still.exr");
   EXPECT_EQ(image.width, 16);
   EXPECT_EQ(image.layers.size(), 4U) << "depth and three of the normal";
   EXPECT_EQ(ReadPng(folder_ / "still.png").height, 9);
@@ -584,7 +584,7 @@ TEST_F(Skyseries, AnotherBudgetOfEffectsIsRenderedAgain) {
 // Hard case 43.
 TEST_F(Skyseries, ThreadsAndExplanationsDoNotChangePixels) {
   ASSERT_EQ(Run(SmallStill() + " --threads 1").status, 0);
-  const Image one = ReadExr(folder_ / "still.exr");
+  const HdrImage one = ReadExr(folder_ / "still.exr");
   ASSERT_EQ(Run(SmallStill() + " --threads 7").status, 0);
   EXPECT_EQ(ReadExr(folder_ / "still.exr").rgb, one.rgb);
   const Outcome explained = Run(SmallStill() + " --explain");

@@ -114,7 +114,7 @@ class ShownFrames {
     flight_.standpoint().AwaitGround();
   }
   /// The next frame, as it was painted: its fourth component is the inverse depth of land.
-  [[nodiscard]] Image Next() {
+  [[nodiscard]] HdrImage Next() {
     constexpr double kFrame_s = 0.05;
     flight_.Advance({}, kFrame_s);
     flight_.Paint({screen_.framebuffer(), screen_.width(), screen_.height()}, kFrame_s);
@@ -128,7 +128,7 @@ class ShownFrames {
 
 /// Green over blue of the greenest pixel: sky at noon has little more of one than of the other,
 /// even at the horizon (1.1), and ground has twice as much.
-double Greenest(const Image& image) {
+double Greenest(const HdrImage& image) {
   double most = 0.0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x)
@@ -147,7 +147,7 @@ TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
   EXPECT_LT(Greenest(window.Next()), kSky) << "no plain where land is to come";
   // The threads beside drawing need some frames.
   for (bool has_come = false; !has_come;) {
-    const Image shown = window.Next();
+    const HdrImage shown = window.Next();
     has_come = flight.edits().land().HasCome();
     ASSERT_EQ(flight.eye().place, start);
     if (!has_come) {
@@ -263,7 +263,7 @@ TEST_F(FlightsOverLand, PicturesInPartsArePicturesInOnePieceAndExposedAsAWhole) 
     FlightSession flight(scene, Evening(), settings);
     PictureWriter(flight).Write(File(part ? "parts.exr" : "whole.exr"), kSize);
   }
-  const Image whole = ReadExr(File("whole.exr")), parts = ReadExr(File("parts.exr"));
+  const HdrImage whole = ReadExr(File("whole.exr")), parts = ReadExr(File("parts.exr"));
   double worst = 0.0;
   for (int y = 0; y < whole.height; ++y) {
     for (int x = 0; x < whole.width; ++x)
@@ -326,7 +326,7 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
   resting.edits().Use(haze, resting.eye().place);
   resting.exposure().Set(12.0);
   PictureWriter(resting).Write(File("resting.exr"), kSmall);
-  const Image at_rest = ReadExr(File("resting.exr"));
+  const HdrImage at_rest = ReadExr(File("resting.exr"));
   const Metadata header_at_rest = ReadExrMetadata(File("resting.exr"));
   for (const char* name : {"moving.exr", "again.exr"}) {
     EXPECT_EQ(ReadExr(File(name)).rgb, at_rest.rgb) << name << ": the same code, to the bit";
@@ -389,7 +389,7 @@ TEST_F(PictureQueueTest, WithoutAWindowPicturesWithInstrumentsAreNotWritten) {
   const FlightSessionSettings settings = SettingsFor(scene);
   FlightSession flight(scene, Evening(), settings);
   PictureQueue queue(scene, settings);
-  const auto no_instruments = [](const Image&) {
+  const auto no_instruments = [](const HdrImage&) {
     ADD_FAILURE() << "drawn into a window that has gone";
     return DisplayImage{};
   };

@@ -34,7 +34,7 @@ glm::dvec3 ToPixel(int x, int y) {
   return EnuFromAngles(elevation, azimuth).xyz;
 }
 
-double LuminanceOfPixel(const Image& image, int x, int y) {
+double LuminanceOfPixel(const HdrImage& image, int x, int y) {
   const std::array<float, 3>& rgb = image.at(x, y);
   return shared::Luminance<double>(rgb[0], rgb[1], rgb[2]);
 }
@@ -68,7 +68,7 @@ std::vector<std::string> PresetsToShow() {
 class PanoramasOfAllPrograms : public TemporaryFolder,
                                public testing::WithParamInterface<std::string> {
  protected:
-  [[nodiscard]] Image PictureOf(const std::string& command) const {
+  [[nodiscard]] HdrImage PictureOf(const std::string& command) const {
     const Outcome outcome = RunCommand(command);
     EXPECT_EQ(outcome.status, 0) << command << "\n" << outcome.error;
     return ReadExr(folder_ / "picture.exr");
@@ -85,12 +85,12 @@ TEST_P(PanoramasOfAllPrograms, ShowTheSameSky) {
                         "[atmosphere]\npreset = \"{}\"\n",
                         kSkyLatitude_deg, kSkyLongitude_deg, kSkyInstant, GetParam()));
   const std::string size = fmt::format(" --size {}x{}", kPanoramaWidth, kPanoramaHeight);
-  const Image series = PictureOf(
+  const HdrImage series = PictureOf(
       fmt::format("'{}' s.toml --samples 1 --out picture.exr{}", tests::kSkyseries, size));
-  const Image sky = PictureOf(fmt::format(
+  const HdrImage sky = PictureOf(fmt::format(
       "'{}' sky --latitude {} --longitude {} --time {} --atmosphere {} --out picture.exr{}",
       tests::kSkylut, kSkyLatitude_deg, kSkyLongitude_deg, kSkyInstant, GetParam(), size));
-  const Image view = PictureOf(
+  const HdrImage view = PictureOf(
       fmt::format("env -u DISPLAY -u WAYLAND_DISPLAY '{}' s.toml --headless --quality medium "
                   "--screenshot picture.exr{}",
                   tests::kSkyview, size));

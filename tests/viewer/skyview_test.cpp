@@ -46,7 +46,7 @@ TEST_F(Skyview, APictureMayBeWiderThanTheDriverDraws) {
       InFolder("s.toml") + " --headless --quality low --size 32768x3 --pitch 20 --screenshot ";
   const Outcome outcome = Run(wide + InFolder("wide.exr"));
   ASSERT_EQ(outcome.status, 0) << outcome.error;
-  const Image image = ReadExr(InFolder("wide.exr"));
+  const HdrImage image = ReadExr(InFolder("wide.exr"));
   ASSERT_EQ(image.width, 32768);
   for (int x = 1; x < image.width; ++x) {
     const float before = image.at(x - 1, 1)[2], here = image.at(x, 1)[2];
@@ -217,7 +217,7 @@ TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
 struct PictureDifference {
   double mean, of_means;
 };
-PictureDifference Apart(const Image& a, const Image& b) {
+PictureDifference Apart(const HdrImage& a, const HdrImage& b) {
   double sum_a = 0.0, sum_b = 0.0, apart = 0.0;
   for (std::size_t i = 0; i < a.rgb.size(); ++i) {
     const auto at = static_cast<double>(a.rgb[i][1]), bt = static_cast<double>(b.rgb[i][1]);
@@ -712,7 +712,7 @@ TEST_F(MeshPictures, AFlatMeshHasNoReliefInEitherProgram) {
              "2026-06-21T05:00:00Z");
   ExpectAlikeAt(32, 30, 0.05, "a plane ");
   for (const char* const name : {"v.exr", "s.exr"}) {
-    const Image image = ReadExr(folder_ / name);
+    const HdrImage image = ReadExr(folder_ / name);
     double sum = 0.0, squares = 0.0, count = 0.0;
     for (int y = 24; y < 36; ++y) {
       for (int x = 24; x < 40; ++x, ++count) {

@@ -392,7 +392,7 @@ TEST_F(ViewerAppTest, TheLandingLightOfTheKeyShinesOnTheGround) {
   low.pitch_rad = -0.3;
   flight_->controller().pilot().PutAt(low, flight_->controller().ground());
   const auto mean_cd_per_m2 = [&] {
-    const Image image = PictureWriter(*flight_).Picture({32, 24}, 1);
+    const HdrImage image = PictureWriter(*flight_).Picture({32, 24}, 1);
     double sum = 0.0;
     for (const auto& rgb : image.rgb) sum += static_cast<double>(rgb[1]);
     return sum / static_cast<double>(image.rgb.size());

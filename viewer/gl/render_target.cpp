@@ -137,7 +137,7 @@ void RenderTarget::BindTexture(int unit, std::size_t output) const {
 
 void RenderTarget::BindDepth(int unit) const { viewer::BindTexture(unit, GL_TEXTURE_2D, depth_); }
 
-void RenderTarget::Write(const Image& image) const {
+void RenderTarget::Write(const HdrImage& image) const {
   ALPENGLOW_ENSURE(image.width, ==, width_);
   ALPENGLOW_ENSURE(image.height, ==, height_);
   std::vector<std::array<float, 3>> rows = image.rgb;
@@ -163,8 +163,8 @@ void RenderTarget::UseDepthOf(const RenderTarget& other) const {
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, other.depth_.id(), 0);
 }
 
-Image RenderTarget::Read() const {
-  Image image(width_, height_);
+HdrImage RenderTarget::Read() const {
+  HdrImage image(width_, height_);
   ReadInto(image.rgb, 0, GL_RGB);
   return image;
 }
@@ -245,10 +245,10 @@ TiledPicture::TiledPicture(int width, int height, int largest_side) {
   // Memory of the writers besides the picture: half floats, or bytes and their rows.
   constexpr int kBytesOfWriters = 8;
   RequireMemoryFor(width, height, static_cast<int>(sizeof(picture_.rgb[0])) + kBytesOfWriters);
-  picture_ = Image(width, height);
+  picture_ = HdrImage(width, height);
 }
 
-void TiledPicture::Put(const Tile& tile, const Image& painted) {
+void TiledPicture::Put(const Tile& tile, const HdrImage& painted) {
   ALPENGLOW_ENSURE(painted.width, ==, tile.painted.width);
   ALPENGLOW_ENSURE(painted.height, ==, tile.painted.height);
   const PictureTile& kept = tile.kept;

@@ -51,12 +51,12 @@ class RenderTarget {
 
   /// Writes red, green and blue of an image into the first output; row 0 is the top. The image must
   /// have the size of the target.
-  void Write(const Image& image) const;
+  void Write(const HdrImage& image) const;
 
   // These functions return the drawn contents, row 0 at the top. They wait until drawing is
   // complete.
   /// Returns red, green and blue.
-  [[nodiscard]] Image Read() const;
+  [[nodiscard]] HdrImage Read() const;
   [[nodiscard]] std::vector<glm::vec4> ReadValues(std::size_t output = 0) const;
   /// Returns red, green and blue of a developed picture, one byte each.
   [[nodiscard]] DisplayImage ReadBytes() const;
@@ -152,13 +152,13 @@ class TiledPicture {
     return ViewOfTile(tile.painted, picture_.width, picture_.height);
   }
   /// Stores the painted picture of a tile without its rim.
-  void Put(const Tile& tile, const Image& painted);
+  void Put(const Tile& tile, const HdrImage& painted);
   /// Returns the picture, once all tiles are stored.
-  [[nodiscard]] Image Take() { return std::move(picture_); }
+  [[nodiscard]] HdrImage Take() { return std::move(picture_); }
 
  private:
   std::vector<Tile> tiles_;
-  Image picture_;
+  HdrImage picture_;
 };
 
 /// Returns whether the driver of the current context can draw a picture of this size, with four

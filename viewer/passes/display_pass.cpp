@@ -28,9 +28,9 @@
 
 namespace alpenglow::viewer {
 
-MeterReading ReadingOf(const Image& picture, const Look& look, Projection projection) {
+MeterReading ReadingOf(const HdrImage& picture, const Look& look, Projection projection) {
   const WhiteBalance white = Settled(look.white, picture, projection);
-  const auto ev100 = [&](const Image& seen) {
+  const auto ev100 = [&](const HdrImage& seen) {
     return MeterEv100(seen, kSunDiskLuminance_cd_per_m2, projection);
   };
   return {white.IsDaylight() ? ev100(picture) : ev100(Balanced(picture, white)), white};
@@ -58,7 +58,7 @@ void ExposureMeter::LookAt(const RenderTarget& picture) {
 std::optional<MeterReading> ExposureMeter::Poll(const Look& look) {
   std::optional<std::vector<std::array<float, 3>>> rgb = reader_.Poll();
   if (!rgb) return std::nullopt;
-  Image copy(small_->width(), small_->height());
+  HdrImage copy(small_->width(), small_->height());
   copy.rgb = std::move(*rgb);
   return ReadingOf(copy, look);
 }

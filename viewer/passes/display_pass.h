@@ -47,7 +47,7 @@ struct MeterReading {
 
 /// Returns the reading of a picture of a perspective camera.
 /// @param look  white balance not yet resolved.
-[[nodiscard]] MeterReading ReadingOf(const Image& picture, const Look& look,
+[[nodiscard]] MeterReading ReadingOf(const HdrImage& picture, const Look& look,
                                      Projection projection = Projection::kCamera);
 
 class ExposureMeter {

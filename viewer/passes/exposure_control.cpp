@@ -65,7 +65,7 @@ std::optional<double> ExposureControl::white_k() const {
   return white_->IsDaylight() ? std::optional(kDaylight_k) : white_->kelvin;
 }
 
-Development ExposureControl::DevelopmentOf(const Image& picture, Projection projection) const {
+Development ExposureControl::DevelopmentOf(const HdrImage& picture, Projection projection) const {
   if (white_ && exposure_.ev100) return {ShownLook(), *exposure_.ev100};
   const MeterReading reading = ReadingOf(picture, look_, projection);
   Look look = look_;

@@ -70,7 +70,7 @@ class ExposureControl {
   [[nodiscard]] std::optional<double> white_k() const;
   /// Returns the development of a picture without a preceding frame: that of the displayed frames
   /// if there are any, otherwise the metered one.
-  [[nodiscard]] Development DevelopmentOf(const Image& picture,
+  [[nodiscard]] Development DevelopmentOf(const HdrImage& picture,
                                           Projection projection = Projection::kCamera) const;
   /// Returns the metadata of exposure and development.
   [[nodiscard]] Metadata Header(const Development& development) const;

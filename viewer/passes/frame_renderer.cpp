@@ -128,7 +128,7 @@ void FrameRenderer::ShowReference(const PaintedView& view, const ReferenceSource
   if (!reference_) reference_ = std::make_unique<ReferencePicture>();
   if (!reference_scene_) reference_scene_ = std::make_shared<const ReferenceScene>(source.scene());
   reference_->Show({reference_scene_, view.eye, view.now, view.width, view.height});
-  if (const std::optional<Image> image = reference_->Poll()) painter_.Show(*image);
+  if (const std::optional<HdrImage> image = reference_->Poll()) painter_.Show(*image);
 }
 
 // A clock at 3600 times real time passes these 900 s in a quarter of a second.
@@ -177,8 +177,8 @@ void FrameRenderer::Paint(const CameraPose& eye, const UtcTime& now,
   display_.Show(view, *exposure_.exposure().ev100, screen, timer_);
 }
 
-Image FrameRenderer::PaintInParts(const PaintedView& whole, int samples, int largest_part,
-                                  const PictureProgress& progress) {
+HdrImage FrameRenderer::PaintInParts(const PaintedView& whole, int samples, int largest_part,
+                                     const PictureProgress& progress) {
   AimLandingLight(whole.eye);
   painter_.WaitUntilReady(whole, samples);
   TiledPicture picture(whole.width, whole.height, largest_part);
@@ -201,7 +201,7 @@ Image FrameRenderer::PaintInParts(const PaintedView& whole, int samples, int lar
   return picture.Take();
 }
 
-void FrameRenderer::ShowStill(const Image& image, const Development& development,
+void FrameRenderer::ShowStill(const HdrImage& image, const Development& development,
                               const ToneMapPass::Screen& screen) {
   const RenderTarget picture(image.width, image.height, RenderTarget::Depth::kNone);
   picture.Write(image);

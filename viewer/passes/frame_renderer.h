@@ -101,8 +101,8 @@ class FrameRenderer {
   /// Waits until everything is ready for a view, and returns its linear picture, which is painted
   /// in tiles of at most `largest_part` pixels a side. Call it with StillSizes.
   /// @param progress  called after each ray of a tile; may be empty.
-  [[nodiscard]] Image PaintInParts(const PaintedView& whole, int samples, int largest_part,
-                                   const PictureProgress& progress);
+  [[nodiscard]] HdrImage PaintInParts(const PaintedView& whole, int samples, int largest_part,
+                                      const PictureProgress& progress);
   /// Returns the quality of written pictures.
   [[nodiscard]] Quality still_quality() const { return rule().fixed.value_or(Quality::kHigh); }
   /// Paints with the sizes of written pictures while it exists.
@@ -119,7 +119,7 @@ class FrameRenderer {
     FrameRenderer& frames_;
   };
   /// Develops a linear picture onto a screen.
-  void ShowStill(const Image& image, const Development& development,
+  void ShowStill(const HdrImage& image, const Development& development,
                  const ToneMapPass::Screen& screen);
 
   /// Returns the progress of the land and of the light on it; nothing while the land is complete.

@@ -51,7 +51,7 @@ std::vector<glm::dvec2> Circle(int count, double first_rad, double range_rad) {
 /// The picture of one side, interpolated.
 class Side {
  public:
-  Side(const ViewAxes& axes, Image image)
+  Side(const ViewAxes& axes, HdrImage image)
       : axes_(axes), half_(HalfWidth(image.width)), image_(std::move(image)) {}
 
   [[nodiscard]] glm::dvec3 At(const glm::dvec3& direction) const {
@@ -73,7 +73,7 @@ class Side {
  private:
   ViewAxes axes_;
   double half_;
-  Image image_;
+  HdrImage image_;
 };
 
 /// Directions of a panorama, and the sides that show them.
@@ -119,7 +119,8 @@ class Directions {
 
 // Adds the directions that a side shows to the pixels of a panorama. They count as the solid angle
 // that they stand for, so that a panorama has the light of a small source.
-void AddSide(const Directions& directions, std::size_t number, const Side& side, Image& panorama) {
+void AddSide(const Directions& directions, std::size_t number, const Side& side,
+             HdrImage& panorama) {
   tbb::parallel_for(0, panorama.height, [&](int row) {
     const double per_cosine = 1.0 / (kDirections * directions.SumOfCosines(row));
     for (int i = 0; i < kDirections * kDirections * panorama.width; ++i) {
@@ -140,9 +141,9 @@ void AddSide(const Directions& directions, std::size_t number, const Side& side,
 
 bool IsPanorama(const PaintedView& view) { return view.eye.fov_rad > kPi; }
 
-Image PaintPanorama(const PaintedView& panorama,
-                    const std::function<Image(const PaintedView& side)>& paint) {
-  Image whole(panorama.width, panorama.height);
+HdrImage PaintPanorama(const PaintedView& panorama,
+                       const std::function<HdrImage(const PaintedView& side)>& paint) {
+  HdrImage whole(panorama.width, panorama.height);
   const Directions directions(panorama);
   for (std::size_t number = 0; number < kSides; ++number)
     AddSide(directions, number, Side(directions.side(number), paint(SideOf(panorama, number))),

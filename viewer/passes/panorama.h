@@ -20,7 +20,7 @@ inline constexpr int kPanoramaSides = 6;
 /// Returns a panorama. Each of its pixels is the mean of the perspectives over 4 x 4 directions.
 /// @param paint  returns the picture of a perspective. It is called kPanoramaSides
 ///     times.
-[[nodiscard]] Image PaintPanorama(const PaintedView& panorama,
-                                  const std::function<Image(const PaintedView& side)>& paint);
+[[nodiscard]] HdrImage PaintPanorama(const PaintedView& panorama,
+                                     const std::function<HdrImage(const PaintedView& side)>& paint);
 
 }  // namespace alpenglow::viewer

@@ -519,7 +519,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies,
   CheckGl("SkyPainter::Paint");
 }
 
-void SkyPainter::Show(const Image& image) {
+void SkyPainter::Show(const HdrImage& image) {
   Fit(picture_, image.width, image.height);
   picture_->Write(image);
 }

@@ -73,7 +73,7 @@ class SkyPainter {
   void Paint(const PaintedView& view, int samples = 1, Bodies bodies = Bodies::kAll,
              const std::function<void(int)>& after_sample = {});
   /// Shows another picture of the view instead: linear, of any size.
-  void Show(const Image& image);
+  void Show(const HdrImage& image);
 
   /// The linear picture. Its fourth component is the inverse depth of land
   /// (shaders/gbuffer/inverse_depth.glsl) if one ray per pixel was drawn.

@@ -84,12 +84,12 @@ TEST_F(ApiImage, LeavesTheThreadsOfOpenExrToTheProcess) {
 
 TEST_F(ApiImage, IsShownAsByTheLayerBelow) {
   const HdrImage image = Gradient();
-  lut::Image light(8, 4);
+  HdrImage light(8, 4);
   light.rgb = image.rgb;
   lut::Look look = lut::LookFromName("aces");
   look.white = lut::WhiteBalanceFromText("camera");
   look = lut::Settled(look, light);
-  const lut::Image seen = lut::Seen(light, look);
+  const HdrImage seen = lut::Seen(light, look);
   const std::vector<std::uint8_t> fixed = lut::Develop(seen, 12.0, look).rgb;
   EXPECT_EQ(ForDisplay(image, {.ev100 = 12.0, .tone_map = "aces"}), fixed);
   const double metered =

@@ -14,16 +14,16 @@ namespace {
 constexpr double kSunDisk_cd_per_m2 = 1.6e9;
 constexpr double kNotTheDisk_cd_per_m2 = 1e8;
 
-Image Uniform(float luminance) {
-  Image image(40, 40);
+HdrImage Uniform(float luminance) {
+  HdrImage image(40, 40);
   for (auto& pixel : image.rgb) pixel.fill(luminance);
   return image;
 }
 
-double Metered(const Image& image) { return MeterEv100(image, kNotTheDisk_cd_per_m2); }
+double Metered(const HdrImage& image) { return MeterEv100(image, kNotTheDisk_cd_per_m2); }
 
 /// Fills rows from `begin` to before `end`.
-void FillRows(Image& image, int begin, int end, float luminance) {
+void FillRows(HdrImage& image, int begin, int end, float luminance) {
   for (int y = begin; y < end; ++y) {
     for (int x = 0; x < image.width; ++x) image.at(x, y).fill(luminance);
   }
@@ -46,7 +46,7 @@ TEST(Exposure, SaturationIs1Point2TimesTwoToTheEv) {
 }
 
 TEST(Exposure, TheSunsDiskDoesNotCount) {
-  Image image = Uniform(1000.0F);
+  HdrImage image = Uniform(1000.0F);
   const double without = Metered(image);
   for (int y = 0; y < 10; ++y) {
     for (int x = 0; x < 20; ++x) image.at(x, y).fill(static_cast<float>(kSunDisk_cd_per_m2));
@@ -57,7 +57,7 @@ TEST(Exposure, TheSunsDiskDoesNotCount) {
 }
 
 TEST(Exposure, DarkestAndBrightestPixelsHaveNoWeight) {
-  Image image = Uniform(1000.0F);
+  HdrImage image = Uniform(1000.0F);
   const double uniform = Metered(image);
   FillRows(image, 0, 12, 0.01F);  // 30 % in deep shadow
   FillRows(image, 39, 40, 1e6F);  // 2.5 % of glare
@@ -65,8 +65,8 @@ TEST(Exposure, DarkestAndBrightestPixelsHaveNoWeight) {
 }
 
 // The lower rows of a picture are lit ground, the others have a luminance of their own.
-Image GroundUnder(float sky_cd_per_m2, int rows_of_ground) {
-  Image image = Uniform(6000.0F);
+HdrImage GroundUnder(float sky_cd_per_m2, int rows_of_ground) {
+  HdrImage image = Uniform(6000.0F);
   FillRows(image, 0, 40 - rows_of_ground, sky_cd_per_m2);
   return image;
 }
@@ -102,7 +102,7 @@ TEST(Exposure, ShadeOnTheGroundCounts) {
 TEST(Exposure, LandThatGrowsDarkFasterThanTheSkyDoesNotOpenThePicture) {
   // The sun falls from -14.5 to -18 degrees: half of the picture loses 2 stops, the sky a third.
   const auto sky_shown = [](float sky, float land) {
-    Image image = Uniform(sky);
+    HdrImage image = Uniform(sky);
     FillRows(image, 0, 20, land);
     return std::log2(double{sky}) - Metered(image);
   };
@@ -119,7 +119,7 @@ TEST(Exposure, WhatTheSunLightsIsNoBrighterThanPaperBesideAGreyCard) {
 TEST(Exposure, LampsDoNotCount) {
   for (const float dusk : {300.0F, 3.0F, 0.03F}) {
     const double without = Metered(Uniform(dusk));
-    Image lamps = Uniform(dusk);
+    HdrImage lamps = Uniform(dusk);
     for (int x = 0; x < 40; ++x) lamps.at(x, 20).fill(x % 2 == 0 ? 2e5F : 50.0F * dusk);
     EXPECT_NEAR(Metered(lamps), without, 1.0 / 16.0)
         << dusk << " cd/m^2: 40 of 1600 pixels are lamps and what they light";
@@ -140,7 +140,7 @@ TEST(Exposure, ASkyThatTurnsBlackMovesTheMeterWithoutAJump) {
 // All pixels of a row of sky are as bright: they enter a class of the meter together.
 TEST(Exposure, LightThatFadesEvenlyIsFollowedEvenly) {
   constexpr double kStep_ev = 0.13;  // of a minute of dusk
-  Image dusk(48, 27);
+  HdrImage dusk(48, 27);
   for (int y = 0; y < dusk.height; ++y)
     FillRows(dusk, y, y + 1, static_cast<float>(std::exp2(-0.35 * y)));
   double before = MeterEv100(dusk, kSunDiskLuminance_cd_per_m2);
@@ -155,7 +155,7 @@ TEST(Exposure, LightThatFadesEvenlyIsFollowedEvenly) {
 
 TEST(Exposure, RowsOfAPanoramaCountAsTheirSolidAngle) {
   // Beyond 30 degrees of latitude lies half of the sphere, on two thirds of the rows.
-  Image panorama(8, 96), half(8, 96);
+  HdrImage panorama(8, 96), half(8, 96);
   FillRows(panorama, 0, 96, 100.0F);
   FillRows(panorama, 32, 64, 1000.0F);
   FillRows(half, 0, 48, 100.0F);
@@ -172,7 +172,7 @@ TEST(Exposure, FromNightToDayTheMeterFollowsTheLight) {
   double before = 0.0;
   for (double stop = -6.0; stop < 16.0; stop += 1.0 / 16.0) {
     const auto bright = static_cast<float>(1.001 * std::exp2(stop));
-    Image image = Uniform(bright / 256.0F);
+    HdrImage image = Uniform(bright / 256.0F);
     FillRows(image, 36, 40, bright);
     const double now = Metered(image);
     if (stop > -6.0) {
@@ -194,7 +194,7 @@ std::array<float, 3> At(double stops) {
 }
 
 float RolledOff(double stops) {
-  Image image(1, 1);
+  HdrImage image(1, 1);
   image.rgb = {At(stops)};
   return WithHighlightsRolledOff(image, 12.0).rgb[0][1];
 }
@@ -203,22 +203,22 @@ TEST(Highlights, AreTheLogarithmOfStopsOverGreyAndKeepTheirColour) {
   for (const double stops : {0.01, 1.0, 3.0, 6.0, 20.0})
     EXPECT_NEAR(RolledOff(stops) / At(std::log1p(stops))[1], 1.0, 2e-6) << stops << " stops, float";
   for (const double stops : {-10.0, -1.0, 0.0}) EXPECT_EQ(RolledOff(stops), At(stops)[1]);
-  Image image(1, 1);
+  HdrImage image(1, 1);
   image.rgb = {{4000.0F, 8000.0F, 16000.0F}};
   const std::array<float, 3> rgb = WithHighlightsRolledOff(image, 12.0).rgb[0];
   EXPECT_FLOAT_EQ(rgb[1] / rgb[0], 2.0F);
   EXPECT_FLOAT_EQ(rgb[2] / rgb[1], 2.0F);
 }
 
-float LuminanceAt(const Image& image, int x, int y) {
+float LuminanceAt(const HdrImage& image, int x, int y) {
   const auto& rgb = image.at(x, y);
   return shared::Luminance<float>(rgb[0], rgb[1], rgb[2]);
 }
 
 // A bright sky over a dark valley, ten stops apart, both with fine ripples of a tenth.
 constexpr int kSide = 128;
-Image SkyOverValley() {
-  Image image(kSide, kSide);
+HdrImage SkyOverValley() {
+  HdrImage image(kSide, kSide);
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
       const float ripple = (x + y) % 2 == 0 ? 1.1F : 1.0F;
@@ -230,8 +230,8 @@ Image SkyOverValley() {
 }
 
 TEST(LocalExposure, BringsBrightAndDarkPartsTogether) {
-  const Image picture = SkyOverValley();
-  const Image exposed = LocallyExposed(picture, 11.0);
+  const HdrImage picture = SkyOverValley();
+  const HdrImage exposed = LocallyExposed(picture, 11.0);
   const float before = std::log2(LuminanceAt(picture, 64, 20) / LuminanceAt(picture, 64, 108));
   const float after = std::log2(LuminanceAt(exposed, 64, 20) / LuminanceAt(exposed, 64, 108));
   EXPECT_NEAR(before, 10.0F, 1e-3F);
@@ -239,7 +239,7 @@ TEST(LocalExposure, BringsBrightAndDarkPartsTogether) {
 }
 
 TEST(LocalExposure, KeepsTheContrastOfDetail) {
-  const Image exposed = LocallyExposed(SkyOverValley(), 11.0);
+  const HdrImage exposed = LocallyExposed(SkyOverValley(), 11.0);
   for (const int y : {20, 108}) {
     const float contrast = LuminanceAt(exposed, 64, y) / LuminanceAt(exposed, 65, y);
     EXPECT_NEAR(contrast, 1.1F, 0.02F) << "ripples of a tenth stay ripples of a tenth";
@@ -247,7 +247,7 @@ TEST(LocalExposure, KeepsTheContrastOfDetail) {
 }
 
 TEST(LocalExposure, DrawsNoHaloAlongAnEdge) {
-  const Image exposed = LocallyExposed(SkyOverValley(), 11.0);
+  const HdrImage exposed = LocallyExposed(SkyOverValley(), 11.0);
   for (int y = 0; y < kSide; ++y) {
     const int far = y < kSide / 2 ? 10 : kSide - 11;
     const int x = (y + far) % 2 == 0 ? 64 : 65;  // the same phase of the ripple
@@ -257,18 +257,18 @@ TEST(LocalExposure, DrawsNoHaloAlongAnEdge) {
 }
 
 TEST(LocalExposure, KeepsHueAndLeavesSmallRangesAlone) {
-  const Image exposed = LocallyExposed(SkyOverValley(), 11.0);
+  const HdrImage exposed = LocallyExposed(SkyOverValley(), 11.0);
   const auto& rgb = exposed.at(30, 90);
   EXPECT_NEAR(rgb[0] / rgb[1], 1.2F, 1e-5F);
   EXPECT_NEAR(rgb[2] / rgb[1], 0.8F, 1e-5F);
-  Image flat(16, 16);
+  HdrImage flat(16, 16);
   for (int i = 0; i < 256; ++i)
     flat.rgb[static_cast<std::size_t>(i)] = {1.0F + 0.01F * static_cast<float>(i), 1.0F, 1.0F};
   EXPECT_EQ(LocallyExposed(flat, 3.0).rgb, flat.rgb) << "already within five stops";
 }
 
 TEST(LocalExposure, MiddleGreyStaysWhereTheExposureHasIt) {
-  Image image(kSide, kSide);
+  HdrImage image(kSide, kSide);
   const auto grey = static_cast<float>(std::exp2(9.0) * kMeterConstant / 100.0);
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -280,7 +280,7 @@ TEST(LocalExposure, MiddleGreyStaysWhereTheExposureHasIt) {
 }
 
 TEST(LocalExposure, DarknessStaysDarkAndFinite) {
-  Image image(32, 32);
+  HdrImage image(32, 32);
   EXPECT_EQ(LocallyExposed(image, 0.0).rgb, image.rgb);
   image.at(3, 3) = {1e5F, 1e5F, 1e5F};
   image.at(4, 4) = {-1.0F, -1.0F, -1.0F};

@@ -78,22 +78,22 @@ TEST(NightVision, LuminanceNeverJumpsFromDuskToNight) {
   }
 }
 
-Image Uniform(std::array<float, 3> rgb, float scotopic) {
-  Image image(2, 2);
+HdrImage Uniform(std::array<float, 3> rgb, float scotopic) {
+  HdrImage image(2, 2);
   image.rgb.assign(4, rgb);
   image.layers.push_back({kScotopicChannel, std::vector<float>(4, scotopic)});
   return image;
 }
 
 TEST(NightVision, LeavesDaylightAloneAndNeedsTheLightThatRodsSee) {
-  const Image day = Uniform({30.0F, 10.0F, 5.0F}, 20.0F);
+  const HdrImage day = Uniform({30.0F, 10.0F, 5.0F}, 20.0F);
   EXPECT_EQ(SeenByNight(day).rgb, day.rgb);
-  EXPECT_THROW((void)SeenByNight(Image(2, 2)), InputError);
+  EXPECT_THROW((void)SeenByNight(HdrImage(2, 2)), InputError);
 }
 
 TEST(NightVision, TakesColourAwayAndTurnsTheRestBlue) {
   // Rods hardly see a red wall of 1e-3 cd/m^2.
-  const Image wall = SeenByNight(Uniform({4e-3F, 2e-4F, 1e-4F}, 2e-4F));
+  const HdrImage wall = SeenByNight(Uniform({4e-3F, 2e-4F, 1e-4F}, 2e-4F));
   const auto& rgb = wall.at(0, 0);
   EXPECT_NEAR(shared::Luminance<float>(rgb[0], rgb[1], rgb[2]), 2e-4F, 1e-7F)
       << "its luminance is the scotopic one";
@@ -139,15 +139,15 @@ TEST(EyeAdaptation, LagsBehindFallingLightButNotAfterAGlanceIntoShade) {
 
 constexpr double kPixel_rad = 0.05 * kRadiansPerDegree;
 
-double MeanOf(const Image& image) {
+double MeanOf(const HdrImage& image) {
   double sum = 0.0;
   for (const auto& rgb : image.rgb) sum += shared::Luminance<double>(rgb[0], rgb[1], rgb[2]);
   return sum / static_cast<double>(image.rgb.size());
 }
 
 /// Returns upright bars of full contrast, `period` pixels from one to the next.
-Image Grating(double mean, double period) {
-  Image image(240, 24);
+HdrImage Grating(double mean, double period) {
+  HdrImage image(240, 24);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x)
       image.at(x, y).fill(
@@ -157,7 +157,7 @@ Image Grating(double mean, double period) {
 }
 
 /// Returns (largest - smallest) / (largest + smallest) in the middle row.
-double ContrastOf(const Image& image) {
+double ContrastOf(const HdrImage& image) {
   float low = image.at(80, 12)[1], high = low;
   for (int x = 80; x < 160; ++x) {
     low = std::min(low, image.at(x, 12)[1]);
@@ -178,8 +178,8 @@ TEST(Acuity, FallsFromDayToNightAsShlaerMeasured) {
 }
 
 TEST(Acuity, DayIsAsSharpAsItWas) {
-  const Image bars = Grating(50.0, 6.0);
-  Image day = bars;
+  const HdrImage bars = Grating(50.0, 6.0);
+  HdrImage day = bars;
   for (auto& rgb : day.rgb) rgb.fill(rgb[0] + 5.0F);
   EXPECT_EQ(WithAcuityOfNight(day, kPixel_rad).rgb, day.rgb);
 }
@@ -188,7 +188,7 @@ TEST(Acuity, InTheDarkFineGratingsFadeAndCoarseOnesDoNot) {
   for (const double mean : {1e-2, 1e-3, 1e-4}) {
     const double finest_px = 1.0 / (AcuityAt(mean) * kPixel_rad / kRadiansPerDegree);
     const auto left = [&](double period_px) {
-      Image bars = Grating(mean, period_px);
+      HdrImage bars = Grating(mean, period_px);
       for (auto& rgb : bars.rgb) rgb.fill(0.95F * static_cast<float>(mean) + 0.05F * rgb[0]);
       return ContrastOf(WithAcuityOfNight(bars, kPixel_rad)) / 0.05;
     };
@@ -203,17 +203,17 @@ TEST(Acuity, InTheDarkFineGratingsFadeAndCoarseOnesDoNot) {
 
 TEST(Acuity, NothingIsLostAndNothingGrowsBrighter) {
   for (const double mean : {1.0, 1e-2, 1e-5}) {
-    const Image bars = Grating(mean, 17.0);
+    const HdrImage bars = Grating(mean, 17.0);
     EXPECT_NEAR(MeanOf(WithAcuityOfNight(bars, kPixel_rad)), MeanOf(bars), 1e-5 * mean)
         << "sums of floats";
   }
 }
 
 TEST(Acuity, ALampStaysAPointInTheDark) {
-  Image image(61, 41);
+  HdrImage image(61, 41);
   for (auto& rgb : image.rgb) rgb.fill(1e-4F);
   image.at(30, 20).fill(500.0F);
-  const Image seen = WithAcuityOfNight(image, kPixel_rad);
+  const HdrImage seen = WithAcuityOfNight(image, kPixel_rad);
   EXPECT_NEAR(seen.at(30, 20)[1], 500.0F, 1e-2F);
   EXPECT_NEAR(seen.at(31, 20)[1], 1e-4F, 2e-6F)
       << "its neighbour has none of its light, and one of 200 around that lend it theirs less";
@@ -221,7 +221,7 @@ TEST(Acuity, ALampStaysAPointInTheDark) {
 
 TEST(Acuity, PicturesOfOnePixelOrOneRowAreSeen) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{300, 1}, std::pair{1, 300}}) {
-    Image image(width, height);
+    HdrImage image(width, height);
     for (auto& rgb : image.rgb) rgb.fill(1e-3F);
     for (const auto& rgb : WithAcuityOfNight(image, kPixel_rad).rgb)
       EXPECT_NEAR(rgb[1], 1e-3F, 1e-8F);
@@ -240,13 +240,13 @@ TEST(Glare, SpreadsAllLightOverTheHemisphere) {
 }
 
 TEST(Glare, IsTheSumOverAllPixels) {
-  Image image(13, 9);
+  HdrImage image(13, 9);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x)
       image.at(x, y) = {static_cast<float>(x), static_cast<float>(y + 1), 2.0F};
   }
   image.at(4, 6) = {3e5F, 2e5F, 1e5F};
-  const Image seen = WithGlareOfEye(image, kPixel_rad);
+  const HdrImage seen = WithGlareOfEye(image, kPixel_rad);
   // A pixel keeps all that it does not send to the torus of 32 x 32.
   double sent = 0.0;
   for (int v = -15; v <= 16; ++v) {
@@ -273,16 +273,16 @@ TEST(Glare, IsTheSumOverAllPixels) {
 }
 
 TEST(Glare, OfASunOnABlackSkyFallsAsTheSquareOfTheAngleFarFromIt) {
-  Image image(200, 3);
+  HdrImage image(200, 3);
   image.at(0, 1) = {1e9F, 1e9F, 1e9F};
-  const Image seen = WithGlareOfEye(image, 0.2 * kRadiansPerDegree);
+  const HdrImage seen = WithGlareOfEye(image, 0.2 * kRadiansPerDegree);
   const double near = static_cast<double>(seen.at(80, 1)[1]);
   const double far = static_cast<double>(seen.at(160, 1)[1]);
   EXPECT_NEAR(near / far, 4.0, 0.2) << "from 16 to 32 degrees";
 }
 
 TEST(Glare, LeavesDarknessDark) {
-  const Image seen = WithGlareOfEye(Image(17, 5), kPixel_rad);
+  const HdrImage seen = WithGlareOfEye(HdrImage(17, 5), kPixel_rad);
   for (const auto& pixel : seen.rgb) EXPECT_EQ(pixel[1], 0.0F);
 }
 

@@ -31,9 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-Image TestImage() {
-  Image image(37, 23);
-  Channel depth{"depth.Z", std::vector<float>(image.rgb.size())};
+HdrImage TestImage() {
+  HdrImage image(37, 23);
+  ImageLayer depth{"depth.Z", std::vector<float>(image.rgb.size())};
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const auto u = static_cast<float>(x);
@@ -59,10 +59,10 @@ using ExrFile = TemporaryFolder;
 using PngFile = TemporaryFolder;
 
 TEST_F(ExrFile, ReturnsEveryBitOfPixelsLayersAndMetadata) {
-  const Image image = TestImage();
+  const HdrImage image = TestImage();
   const fs::path file = folder_ / "a.exr";
   WriteExr(file, image, kMetadata);
-  const Image back = ReadExr(file);
+  const HdrImage back = ReadExr(file);
   EXPECT_EQ(back.width, image.width);
   EXPECT_EQ(back.height, image.height);
   EXPECT_EQ(back.rgb, image.rgb);
@@ -77,21 +77,21 @@ TEST_F(ExrFile, APictureWithAValueThatIsNotFiniteIsNotWritten) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
   const auto fault_of = [&](const auto& change) {
-    Image image = TestImage();
+    HdrImage image = TestImage();
     change(image);
     return tests::FaultOf<InternalError>([&] { WriteExr(folder_ / "a.exr", image, kMetadata); });
   };
-  EXPECT_THAT(fault_of([](Image& image) { image.at(3, 4)[1] = kNan; }),
+  EXPECT_THAT(fault_of([](HdrImage& image) { image.at(3, 4)[1] = kNan; }),
               HasSubstr("a.exr is not written: pixel (3, 4) of layer G is nan"));
-  EXPECT_THAT(fault_of([](Image& image) { image.at(0, 1)[2] = kInfinite; }),
+  EXPECT_THAT(fault_of([](HdrImage& image) { image.at(0, 1)[2] = kInfinite; }),
               HasSubstr("pixel (0, 1) of layer B is inf"));
-  EXPECT_THAT(fault_of([](Image& image) { image.layers[0].values[5] = kNan; }),
+  EXPECT_THAT(fault_of([](HdrImage& image) { image.layers[0].values[5] = kNan; }),
               HasSubstr("pixel (5, 0) of layer depth.Z is nan"));
-  EXPECT_THAT(fault_of([](Image& image) { image.layers[0].name = "normal.Z"; }),
+  EXPECT_THAT(fault_of([](HdrImage& image) { image.layers[0].name = "normal.Z"; }),
               HasSubstr("of layer normal.Z is inf"))
       << "only distances are infinite where there is nothing";
   EXPECT_EQ(FileCount(), 0U) << "nothing is left, under no name";
-  const std::string of_ceiling = fault_of([](Image& image) {
+  const std::string of_ceiling = fault_of([](HdrImage& image) {
     image.layers[0].name = "normal.Z";
     for (float& value : image.layers[0].values) value = -0.5F;
   });
@@ -101,7 +101,7 @@ TEST_F(ExrFile, APictureWithAValueThatIsNotFiniteIsNotWritten) {
 // Hard case 44.
 TEST_F(ExrFile, OnePixelAndOneColumnAreImages) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 500}, std::pair{16384, 1}}) {
-    Image image(width, height);
+    HdrImage image(width, height);
     image.at(0, height - 1) = {1.0F, 2.0F, 3.0F};
     WriteExr(folder_ / "a.exr", image, {});
     EXPECT_EQ(ReadExr(folder_ / "a.exr").rgb, image.rgb);
@@ -151,10 +151,10 @@ TEST_F(ExrFile, AFullDiskIsAnOutputError) {
   EXPECT_THROW(WriteExr(folder_ / "a.exr", TestImage(), {}), OutputError);
 }
 
-TEST(Image, SizesOutOfRangeAreRefused) {
-  EXPECT_THROW(Image(0, 5), InputError);
-  EXPECT_THROW(Image(5, -1), InputError);
-  EXPECT_THROW(Image(40000, 1), InputError);
+TEST(HdrImage, SizesOutOfRangeAreRefused) {
+  EXPECT_THROW(HdrImage(0, 5), InputError);
+  EXPECT_THROW(HdrImage(5, -1), InputError);
+  EXPECT_THROW(HdrImage(40000, 1), InputError);
 }
 
 TEST_F(PngFile, ReturnsEveryByteAndTheMetadata) {
@@ -184,8 +184,8 @@ TEST_F(PngFile, EveryTruncationAndForeignTextIsRefused) {
   EXPECT_THROW((void)ReadPng(folder_ / "missing.png"), InputError);
 }
 
-Image Grey(int width, int height, float luminance) {
-  Image image(width, height);
+HdrImage Grey(int width, int height, float luminance) {
+  HdrImage image(width, height);
   for (auto& pixel : image.rgb) pixel = {luminance, luminance, luminance};
   return image;
 }
@@ -204,7 +204,7 @@ TEST(Develop, LinearCurveReproducesTheSrgbCodeOnAverage) {
 TEST(Develop, ASlowGradientHasNoBands) {
   // One code over 256 columns: without dither two flat
   // bands, with it every 64-column block differs.
-  Image image(256, 64);
+  HdrImage image(256, 64);
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 256; ++x) {
       const double code = (100.0 + x / 256.0) / 255.0;
@@ -228,7 +228,7 @@ TEST(Develop, ASlowGradientHasNoBands) {
 TEST(Develop, BlackStaysBlackAndAPixelThatIsNoNumberIsAFault) {
   const DisplayImage display = Develop(Grey(64, 64, 0.0F), 10.0, {.curve = ToneCurve::kAgx});
   EXPECT_EQ(display.rgb, std::vector<std::uint8_t>(64 * 64 * 3, 0));
-  Image image = Grey(4, 4, 1.0F);
+  HdrImage image = Grey(4, 4, 1.0F);
   image.at(2, 1)[1] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW((void)Develop(image, 0.0, {.curve = ToneCurve::kAgx}), InternalError);
 }
@@ -293,7 +293,7 @@ TEST(Dither, NoiseIsTriangularAndChannelsAreUncorrelated) {
 // Hard case 32.
 TEST_F(ExrFile, PicturesAreInFloatsAndHoldTheSunsDisk) {
   // 1.6e9 cd/m^2 in the mean, and 65504 is the largest half.
-  Image image(3, 1);
+  HdrImage image(3, 1);
   image.at(1, 0) = {1.9e9F, 1.6e9F, 1.4e9F};
   image.layers.push_back({"inscatter.R", {0.0F, 1.6e9F, 1e-30F}});
   WriteExr(folder_ / "sun.exr", image, {});
@@ -301,7 +301,7 @@ TEST_F(ExrFile, PicturesAreInFloatsAndHoldTheSunsDisk) {
   const Imf::ChannelList& channels = file.header().channels();
   for (auto channel = channels.begin(); channel != channels.end(); ++channel)
     EXPECT_EQ(channel.channel().type, Imf::FLOAT) << channel.name();
-  const Image back = ReadExr(folder_ / "sun.exr");
+  const HdrImage back = ReadExr(folder_ / "sun.exr");
   EXPECT_EQ(back.rgb, image.rgb);
   EXPECT_EQ(back.layers[0].values, image.layers[0].values);
 }
@@ -325,8 +325,8 @@ float CoveredShare(int x, int y, double middle, double radius) {
 }
 
 /// Returns a white disk before a sky. Every pixel is the mean of its light.
-Image DiskBeforeSky(int side, double radius) {
-  Image image(side, side);
+HdrImage DiskBeforeSky(int side, double radius) {
+  HdrImage image(side, side);
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
       const float share = CoveredShare(x, y, 0.5 * side, radius);
@@ -339,7 +339,7 @@ Image DiskBeforeSky(int side, double radius) {
 
 TEST(ClippedEdge, APixelIsTheMixtureOfDiskAndSkyThatItCovers) {
   for (const double radius : {2.5, 5.3, 11.7}) {
-    const Image image = DiskBeforeSky(32, radius);
+    const HdrImage image = DiskBeforeSky(32, radius);
     int edges = 0;
     for (int y = 0; y < 32; ++y) {
       for (int x = 0; x < 32; ++x) {
@@ -359,7 +359,7 @@ TEST(ClippedEdge, APixelIsTheMixtureOfDiskAndSkyThatItCovers) {
 TEST(ClippedEdge, BesideADiskAreLandAlongARidgeAndSkyElsewhere) {
   constexpr std::array<float, 3> kLand{400.0F, 300.0F, 200.0F};
   constexpr int kRidge = 18;  // land from this row on, which is half in the sky
-  Image image = DiskBeforeSky(32, 9.0);
+  HdrImage image = DiskBeforeSky(32, 9.0);
   for (int x = 0; x < 32; ++x) {
     for (std::size_t c = 0; c < 3; ++c)
       image.at(x, kRidge)[c] = 0.5F * (image.at(x, kRidge)[c] + kLand[c]);
@@ -379,7 +379,7 @@ TEST(ClippedEdge, BesideADiskAreLandAlongARidgeAndSkyElsewhere) {
 TEST(ClippedEdge, ADarkLimbIsNoMissingCover) {
   // 0.3 + 0.93 mu - 0.23 mu^2, the sun in green light (Allen 1973), at the middle of each pixel.
   for (const double radius : {8.3, 11.7, 15.2}) {
-    Image image = DiskBeforeSky(36, radius);
+    HdrImage image = DiskBeforeSky(36, radius);
     for (int y = 0; y < 36; ++y) {
       for (int x = 0; x < 36; ++x) {
         const double rho = std::min(std::hypot(x - 17.5, y - 17.5) / radius, 0.99);
@@ -401,7 +401,7 @@ TEST(ClippedEdge, ADarkLimbIsNoMissingCover) {
 }
 
 TEST(ClippedEdge, ADisksEdgeIsSmoothOnTheDisplay) {
-  const Image image = DiskBeforeSky(32, 7.5);
+  const HdrImage image = DiskBeforeSky(32, 7.5);
   const DisplayImage shown = Develop(image, 15.0, {.curve = ToneCurve::kAgx});
   const auto blue_less_red = [&](int x, int y) {
     const std::size_t at = 3 * static_cast<std::size_t>(y * 32 + x);
@@ -424,8 +424,8 @@ TEST(ClippedEdge, ADisksEdgeIsSmoothOnTheDisplay) {
 
 // The aureole is as bright at the disk as a share of white, and a third of that `fades_in` pixels
 // farther out.
-Image DiskInAnAureole(double radius, float of_white, double fades_in) {
-  Image image = DiskBeforeSky(32, radius);
+HdrImage DiskInAnAureole(double radius, float of_white, double fades_in) {
+  HdrImage image = DiskBeforeSky(32, radius);
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {
       const double out = std::hypot(x - 15.5, y - 15.5) - radius;
@@ -443,7 +443,7 @@ TEST(ClippedEdge, ASteepAureoleHasNoDarkRingAtTheDisk) {
   constexpr double kRadius = 2.5;
   for (const double fades_in : {6.0, 4.0}) {
     for (const float of_white : {0.2F, 0.6F, 1.0F, 1.5F}) {
-      const Image image = DiskInAnAureole(kRadius, of_white, fades_in);
+      const HdrImage image = DiskInAnAureole(kRadius, of_white, fades_in);
       for (int y = 0; y < 32; ++y) {
         for (int x = 0; x < 32; ++x) {
           if (CoveredShare(x, y, 16.0, kRadius) > 0.0F) continue;
@@ -462,7 +462,7 @@ TEST(ClippedEdge, ASteepAureoleHasNoDarkRingAtTheDisk) {
 }
 
 TEST(ClippedEdge, SparklesPlainSkyAndLightWithinTheCurveAreNone) {
-  Image image = DiskBeforeSky(32, 0.0);
+  HdrImage image = DiskBeforeSky(32, 0.0);
   image.at(10, 10) = {kDisk, kDisk, kDisk};
   image.at(20, 21) = {kDisk, kDisk, kDisk};
   image.at(21, 20) = {kDisk, kDisk, kDisk};
@@ -476,7 +476,7 @@ TEST(ClippedEdge, SparklesPlainSkyAndLightWithinTheCurveAreNone) {
 }
 
 TEST(ClippedEdge, NothingJumpsWhileADiskGrowsDimmer) {
-  const Image image = DiskBeforeSky(32, 7.5);
+  const HdrImage image = DiskBeforeSky(32, 7.5);
   int last = -1;
   for (double ev100 = 30.0; ev100 > 10.0; ev100 -= 0.125) {
     const DisplayImage shown = Develop(image, ev100, {.curve = ToneCurve::kAgx});

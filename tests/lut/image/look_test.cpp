@@ -108,7 +108,7 @@ TEST(Look, IncidentPicturesRollOffTheirHighlightsButNotLinearOnes) {
   EXPECT_TRUE(LookUnder(incident, {}).rolls_off);
   EXPECT_FALSE(LookUnder(incident, {.curve = ToneCurve::kLinear}).rolls_off);
   EXPECT_FALSE(LookUnder({}, {}).rolls_off);
-  Image sky(2, 1);
+  HdrImage sky(2, 1);
   sky.rgb = {{1e4F, 1e4F, 1e4F}, {2e4F, 2e4F, 2e4F}};
   const DisplayImage shown = Develop(sky, 12.0, LookUnder(incident, {}));
   EXPECT_EQ(shown.rgb, Develop(WithHighlightsRolledOff(sky, 12.0), 12.0, Look{}).rgb);
@@ -124,7 +124,7 @@ TEST(Look, ExposureIsMeteredIncidentOrANumber) {
 }
 
 TEST(Look, DevelopsTheLocallyExposedPicture) {
-  Image image(64, 64);
+  HdrImage image(64, 64);
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 64; ++x) {
       const float level = y < 32 ? 4000.0F : 2.0F;
@@ -137,7 +137,7 @@ TEST(Look, DevelopsTheLocallyExposedPicture) {
 }
 
 TEST(Look, NightVisionIsSeenBeforeItIsMetered) {
-  Image image(4, 4);
+  HdrImage image(4, 4);
   image.rgb.assign(16, {1e-3F, 1e-3F, 1e-3F});
   image.layers.push_back({kScotopicChannel, std::vector<float>(16, 3e-3F)});
   EXPECT_EQ(Seen(image, {}).rgb, image.rgb);
@@ -148,13 +148,13 @@ TEST(Look, NightVisionIsSeenBeforeItIsMetered) {
 TEST(Look, PicturesOfOnePixelOneColumnAndOneLongRowAreDeveloped) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 500}, std::pair{16384, 1}}) {
     // An even grey at dusk, where night vision changes it.
-    Image image(width, height);
+    HdrImage image(width, height);
     for (auto& pixel : image.rgb) pixel = {0.5F, 0.5F, 0.5F};
     image.layers.push_back({kScotopicChannel, std::vector<float>(image.rgb.size(), 1.0F)});
     for (Look look : {Look{}, LookFromName("local"), Look{.night_vision = true},
                       Look{.local_exposure = true, .night_vision = true}}) {
       look.agx = AgxLook::kNone;
-      const Image seen = Seen(image, look);
+      const HdrImage seen = Seen(image, look);
       EXPECT_EQ(look.night_vision, seen.rgb != image.rgb);
       const DisplayImage display = Develop(seen, MeterEv100(seen, 1e9), look);
       ASSERT_EQ(display.rgb.size(), 3 * image.rgb.size());
@@ -174,8 +174,8 @@ std::array<double, 2> ChromaticityOf(double kelvin) {
   return {x / (x + y + z), y / (x + y + z)};
 }
 
-Image Uniform(const std::array<double, 3>& rgb, double luminance) {
-  Image image(20, 20);
+HdrImage Uniform(const std::array<double, 3>& rgb, double luminance) {
+  HdrImage image(20, 20);
   for (auto& pixel : image.rgb) {
     for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(luminance * rgb[c]);
   }
@@ -212,14 +212,14 @@ TEST(WhiteBalance, TheTemperatureOfALightIsFoundAgain) {
 
 TEST(WhiteBalance, PaperUnderTheLightThatIsAskedForIsWhiteAndAsBright) {
   for (const double kelvin : {2000.0, 3000.0, 4500.0, 5600.0, 12000.0}) {
-    const Image paper = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(kelvin), 100.0);
+    const HdrImage paper = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(kelvin), 100.0);
     const auto rgb = Balanced(paper, OfKelvin(kelvin)).at(0, 0);
     for (const float channel : rgb) EXPECT_NEAR(channel, 100.0F, 2e-3F) << kelvin << " K";
   }
 }
 
 TEST(WhiteBalance, DaylightLeavesPicturesAloneAndAWarmerLightMakesThemBluer) {
-  const Image grey = Uniform({1.0, 1.0, 1.0}, 100.0);
+  const HdrImage grey = Uniform({1.0, 1.0, 1.0}, 100.0);
   EXPECT_EQ(Balanced(grey, {}).rgb, grey.rgb);
   EXPECT_EQ(Balanced(grey, OfKelvin(kDaylight_k)).rgb, grey.rgb);
   const auto near = Balanced(grey, OfKelvin(6503.9)).at(0, 0);
@@ -233,20 +233,20 @@ TEST(WhiteBalance, DaylightLeavesPicturesAloneAndAWarmerLightMakesThemBluer) {
 
 TEST(WhiteBalance, AutoTakesTheMeteredLightForWhiteAsFarAsACameraDoes) {
   const auto settled = [](double kelvin) {
-    const Image image = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(kelvin), 500.0);
+    const HdrImage image = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(kelvin), 500.0);
     return *Settled({WhiteBalance::Kind::kAuto}, image, Projection::kCamera).kelvin;
   };
   EXPECT_NEAR(settled(4000.0), 4000.0, 5.0) << "a tenth of a mired, and colours are floats";
   EXPECT_NEAR(settled(5600.0), 5600.0, 5.0);
   EXPECT_EQ(settled(2200.0), 3000.0) << "candles stay warm";
   EXPECT_EQ(settled(15000.0), 7000.0) << "a blue sky stays blue";
-  EXPECT_NEAR(*Settled({WhiteBalance::Kind::kAuto}, Image(4, 4), Projection::kCamera).kelvin,
+  EXPECT_NEAR(*Settled({WhiteBalance::Kind::kAuto}, HdrImage(4, 4), Projection::kCamera).kelvin,
               6504.0, 40.0)
       << "no light: D65 of sRGB is off the locus in its fourth digit";
 }
 
 TEST(WhiteBalance, AutoDoesNotLookAtTheSunNorAtLamps) {
-  Image image = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(5600.0), 500.0);
+  HdrImage image = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(5600.0), 500.0);
   const WhiteBalance ask{WhiteBalance::Kind::kAuto};
   const double without = *Settled(ask, image, Projection::kCamera).kelvin;
   for (int x = 0; x < 10; ++x) image.at(x, 0) = {9e4F, 3e4F, 2e3F};    // 2.5 % of sodium lamps
@@ -289,7 +289,7 @@ TEST(WhiteBalance, IsCameraDaylightAutoOrKelvin) {
 }
 
 TEST(WhiteBalance, IsPartOfWhatIsSeen) {
-  const Image lit = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(3000.0), 50.0);
+  const HdrImage lit = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(3000.0), 50.0);
   Look look;
   look.white = {WhiteBalance::Kind::kAuto};
   EXPECT_THROW((void)Seen(lit, look), InternalError) << "auto asks for a picture first";

@@ -22,7 +22,7 @@ using testing::Pair;
 class PictureFormatTest : public TemporaryFolder {};
 
 TEST_F(PictureFormatTest, EveryFormatKeepsTheMetadata) {
-  const Image image(4, 3);
+  const HdrImage image(4, 3);
   const Metadata metadata{{"alpenglow.place", "Zürich"}};
   for (const PictureFormat& format : PictureFormats()) {
     const std::filesystem::path file = folder_ / (std::string("a") + format.extension);

@@ -26,7 +26,7 @@ constexpr double kAzimuths_deg[] = {0.0, 40.0, 200.0, 275.0};
 using tests::Earth;
 using tests::Luminance;
 
-Image Panorama(const PanoramaSettings& settings) {
+HdrImage Panorama(const PanoramaSettings& settings) {
   return RenderPanorama(Earth().single_scattering(), Earth().multiple_scattering(), settings);
 }
 
@@ -42,7 +42,7 @@ PanoramaSettings SunAtDegrees(double elevation, double azimuth) {
 struct Pixel {
   int x, y;
 };
-Pixel Brightest(const Image& image) {
+Pixel Brightest(const HdrImage& image) {
   Pixel best{0, 0};
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -93,7 +93,7 @@ double ColumnOf(PanoramaOrientation orientation, double elevation_rad, double az
   return (u - std::floor(u)) * width;
 }
 
-bool ShowsTheSunAt(const Image& image, double column, double row) {
+bool ShowsTheSunAt(const HdrImage& image, double column, double row) {
   const Pixel sun = Brightest(image);
   const double across = std::remainder(sun.x + 0.5 - column, static_cast<double>(image.width));
   return std::abs(across) <= 1.0 && std::abs(sun.y + 0.5 - row) <= 1.0;
@@ -106,7 +106,7 @@ TEST_P(Orientation, TheProgramFindsTheSunAndNotInAMirror) {
     PanoramaSettings settings = SunAtDegrees(35.0, azimuth_deg);
     settings.orientation = GetParam();
     settings.sun_disk = true;
-    Image image = Panorama(settings);
+    HdrImage image = Panorama(settings);
     const double column = ColumnOf(GetParam(), settings.sun.elevation_rad(),
                                    settings.sun.azimuth_rad(), settings.width);
     const double row = (90.0 - 35.0) / 180.0 * settings.height;
@@ -137,7 +137,7 @@ TEST(Panorama, NamesOfOrientationsAreReadBack) {
 }
 
 // Returns the cosine-weighted integral over the pixels of a half of the sphere: illuminance [lx].
-double IlluminanceFromAbove(const Image& image) {
+double IlluminanceFromAbove(const HdrImage& image) {
   double sum = 0.0;
   for (int y = 0; y < image.height / 2; ++y) {
     const double top = std::cos(kPi * y / image.height);
@@ -161,7 +161,7 @@ double LuminanceOf(const Bands<Real>& relative) {
 
 TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
   for (const double elevation_deg : {50.0, 10.0, 0.0, -5.0, -9.0}) {
-    const Image image = Panorama(SunAtDegrees(elevation_deg, 120.0));
+    const HdrImage image = Panorama(SunAtDegrees(elevation_deg, 120.0));
     const double expected = LuminanceOf(Earth().multiple_scattering().SkyIrradiance(
         2.0, std::sin(elevation_deg * kRadiansPerDegree)));
     EXPECT_NEAR(IlluminanceFromAbove(image), expected, 0.02 * expected)
@@ -176,7 +176,7 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
     for (const double elevation_deg : {60.0, 10.0, 1.0, -4.0, -10.0}) {
       PanoramaSettings settings = SunAtDegrees(elevation_deg, 10.0);
       settings.altitude_m = altitude_m;
-      const Image image = Panorama(settings);
+      const HdrImage image = Panorama(settings);
       const double mu_s = std::sin(settings.sun.elevation_rad());
       double brightest = 0.0;
       for (const auto& pixel : image.rgb) brightest = std::max(brightest, Luminance(pixel));
@@ -204,9 +204,9 @@ TEST(Panorama, LayersOfPolarisationLeaveThePictureAsItIs) {
   PanoramaSettings settings = SunAtDegrees(10.0, 0.0);
   settings.width = 64;
   settings.height = 32;
-  const Image bare = Panorama(settings);
+  const HdrImage bare = Panorama(settings);
   settings.layers = {StokesLayer::kPolarisation, StokesLayer::kQ, StokesLayer::kU};
-  const Image image = Panorama(settings);
+  const HdrImage image = Panorama(settings);
   EXPECT_EQ(image.rgb, bare.rgb) << "to the last bit";
   ASSERT_EQ(image.layers.size(), 8U);
   EXPECT_EQ(image.layers[1].name, "polarisation.angle");
@@ -237,9 +237,9 @@ TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
     PanoramaSettings settings = SunAtDegrees(41.0, 77.0);
     settings.width = width;
     settings.height = height;
-    const Image without = Panorama(settings);
+    const HdrImage without = Panorama(settings);
     settings.sun_disk = true;
-    const Image with = Panorama(settings);
+    const HdrImage with = Panorama(settings);
     double light = 0.0;
     for (int y = 0; y < height; ++y) {
       const double solid_angle =
@@ -256,7 +256,7 @@ TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
 
 TEST(Panorama, ASunBelowTheHorizonHasNoDisk) {
   PanoramaSettings settings = SunAtDegrees(-2.0, 30.0);
-  const Image without = Panorama(settings);
+  const HdrImage without = Panorama(settings);
   settings.sun_disk = true;
   EXPECT_EQ(Panorama(settings).rgb, without.rgb);
 }
@@ -265,9 +265,9 @@ TEST(Panorama, ItsCompassStandsWhereTheSunsOfTheQuartersStand) {
   PanoramaSettings settings = SunAtDegrees(5.0, 45.0);
   settings.width = 720;
   settings.height = 360;
-  const Image plain = Panorama(settings);
+  const HdrImage plain = Panorama(settings);
   settings.compass = true;
-  const Image painted = Panorama(settings);
+  const HdrImage painted = Panorama(settings);
   // Columns in which ink stands on the horizontal row of a letter's foot or head; azimuth 0 is the
   // middle of the picture, 2 pixels are a degree.
   const auto ink = [&](double azimuth_deg, double across_deg, double up_deg) {

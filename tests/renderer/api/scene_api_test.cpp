@@ -41,7 +41,7 @@ TEST_F(ApiScene, IsRenderedAsByTheLayerBelow) {
   settings.layers = {renderer::PictureLayer::kDepth};
   const renderer::SceneRenderer expected(scene);
   const auto instant = atmosphere::ParseInstant("2026-06-21T16:00:00Z");
-  const lut::Image image = expected.Render(instant, settings);
+  const HdrImage image = expected.Render(instant, settings);
   EXPECT_EQ(still.rgb, image.rgb);
   ASSERT_EQ(still.layers.size(), 1U);
   EXPECT_EQ(still.layers[0].values, image.layers[0].values);

@@ -29,7 +29,7 @@ struct GreyPreview {
       for (const auto& [effect, share] : darkens_) {
         if (!effects.Has(effect)) value *= 1.0 - share;
       }
-      PreviewPicture picture{Image(static_cast<int>(preview.groups[0].size()), 1), 1.0};
+      PreviewPicture picture{HdrImage(static_cast<int>(preview.groups[0].size()), 1), 1.0};
       for (auto& rgb : picture.image.rgb) rgb.fill(static_cast<float>(value));
       return picture;
     };
@@ -91,7 +91,7 @@ TEST(EffectChoice, ASmallGroupCountsAlone) {
   grey.preview.groups.push_back({{3, 4}, {5, 6}});
   grey.preview.render = [&](EffectSet effects) {
     const std::size_t whole = grey.preview.groups[0].size();
-    PreviewPicture picture{Image(static_cast<int>(whole) + 2, 1), 1.0};
+    PreviewPicture picture{HdrImage(static_cast<int>(whole) + 2, 1), 1.0};
     for (auto& rgb : picture.image.rgb) rgb.fill(100.0F);
     if (!effects.Has(Effect::kLights)) picture.image.rgb[whole].fill(90.0F);
     return picture;
@@ -215,8 +215,8 @@ TEST(Effects, AnUnknownNameIsRefusedWithTheNearest) {
         << text;
 }
 
-Image Grey(float value) {
-  Image image(20, 10);
+HdrImage Grey(float value) {
+  HdrImage image(20, 10);
   for (auto& rgb : image.rgb) rgb = {value, value, value};
   return image;
 }
@@ -237,7 +237,7 @@ TEST(PictureChange, IsSymmetricAndAtMostTwo) {
 
 TEST(PictureChange, DarkPixelsCountLess) {
   // Half of the pixels are middle grey; the others have a thousandth of it, and double.
-  Image reference = Grey(100.0F), other = Grey(100.0F);
+  HdrImage reference = Grey(100.0F), other = Grey(100.0F);
   for (std::size_t i = 0; i < reference.rgb.size(); i += 4) {
     reference.rgb[i] = {0.1F, 0.1F, 0.1F};
     other.rgb[i] = {0.2F, 0.2F, 0.2F};

@@ -31,7 +31,7 @@ class RenderedScene {
   explicit RenderedScene(const EffectScene& scene)
       : instant_(scene.instant), renderer_(scene.scene) {}
 
-  [[nodiscard]] const Image& With(EffectSet effects) {
+  [[nodiscard]] const HdrImage& With(EffectSet effects) {
     RenderSettings settings = kSmall;
     settings.effects = effects;
     const auto found = pictures_.find(effects);
@@ -47,7 +47,7 @@ class RenderedScene {
     if (found != chosen_.end()) return found->second;
     return chosen_.try_emplace(max_error, Choose(max_error, kSmall)).first->second;
   }
-  [[nodiscard]] const Image& WithAll() { return With(EffectSet::All()); }
+  [[nodiscard]] const HdrImage& WithAll() { return With(EffectSet::All()); }
   /// Returns estimates of all effects, including the free ones. The explanation solves the air in
   /// many bands.
   [[nodiscard]] std::vector<EffectEstimate> Explained() const {
@@ -57,7 +57,7 @@ class RenderedScene {
  private:
   UtcTime instant_;
   SceneRenderer renderer_;
-  std::map<EffectSet, Image> pictures_;
+  std::map<EffectSet, HdrImage> pictures_;
   std::map<double, ChosenPicture> chosen_;
 };
 
@@ -102,7 +102,7 @@ TEST_P(SceneEffects, ThePilotPredictsTheChangeByEachEffect) {
   for (const EffectEstimate& estimate :
        explained ? scene_->Explained() : scene_->Within(0.01).choice.estimates) {
     if (!estimate.present) continue;
-    const Image without = scene_->With(EffectSet::All().Without(estimate.effect));
+    const HdrImage without = scene_->With(EffectSet::All().Without(estimate.effect));
     const double is = ChangeOf(scene_->WithAll(), without).Rms();
     const char* name = TextOf(estimate.effect).name;
     EXPECT_LE(is, estimate.change.RmsAtMost() + 1e-3)

@@ -248,7 +248,7 @@ TEST(LampLight, PicturesHaveALayerOfLampLight) {
                                 .samples_per_pixel = 1,
                                 .air_nodes = 4,
                                 .layers = {PictureLayer::kLamps}};
-  const Image night = renderer.Render(ParseInstant("2026-01-15T23:00:00Z"), settings);
+  const HdrImage night = renderer.Render(ParseInstant("2026-01-15T23:00:00Z"), settings);
   ASSERT_EQ(night.layers.size(), 3U);
   EXPECT_EQ(night.layers[0].name, "lamps.R");
   double sum = 0.0, whole = 0.0;
@@ -341,7 +341,7 @@ Light LampToTheNorth(double north_m, double candela) {
 }
 
 // Renders the lamps without the other lights of the night.
-Image Picture(const Scene& scene) {
+HdrImage Picture(const Scene& scene) {
   const EffectSet effects = EffectSet::All()
                                 .Without(Effect::kMoonlight)
                                 .Without(Effect::kNightSky)
@@ -354,7 +354,7 @@ Image Picture(const Scene& scene) {
                                       .layers = {PictureLayer::kLamps}});
 }
 
-double BrightestOf(const Image& image) {
+double BrightestOf(const HdrImage& image) {
   double brightest = 0.0;
   for (const auto& rgb : image.rgb) {
     for (const float channel : rgb) {
@@ -368,11 +368,11 @@ double BrightestOf(const Image& image) {
 // Hard case 42.
 TEST(LampExtremes, ALampWithoutIntensityChangesNoByte) {
   Scene scene = FoggyNight();
-  const Image dark = Picture(scene);
+  const HdrImage dark = Picture(scene);
   scene.lights = {LampToTheNorth(30.0, 0.0), LampToTheNorth(-5.0, 0.0)};
-  const Image image = Picture(scene);
+  const HdrImage image = Picture(scene);
   EXPECT_EQ(image.rgb, dark.rgb);
-  for (const Channel& layer : image.layers) {
+  for (const ImageLayer& layer : image.layers) {
     for (const float value : layer.values) EXPECT_EQ(value, 0.0F) << layer.name;
   }
 }

@@ -362,13 +362,13 @@ Scene WithoutVolume() {
 MediumLayer FogIn(double extinction_per_m, double scale_height_m, double albedo = 1.0) {
   return {extinction_per_m, scale_height_m, 0.0, albedo, DropletPhase(12.0)};
 }
-Image Rendered(const Scene& scene, const UtcTime& instant,
-               const RenderSettings& settings = kSmallMedia) {
+HdrImage Rendered(const Scene& scene, const UtcTime& instant,
+                  const RenderSettings& settings = kSmallMedia) {
   return SceneRenderer(scene).Render(instant, settings);
 }
 
-const Image& ClearNoon() {
-  static const Image image = Rendered(WithoutVolume(), kMediaNoon);
+const HdrImage& ClearNoon() {
+  static const HdrImage image = Rendered(WithoutVolume(), kMediaNoon);
   return image;
 }
 
@@ -419,8 +419,8 @@ TEST(RenderMedia, OpaqueBlackVolumeLeavesOnlyTheAirInFrontOfIt) {
   RenderSettings settings = kSmallMedia;
   settings.layers = {PictureLayer::kTransmittance, PictureLayer::kVolumes,
                      PictureLayer::kInscatter};
-  const Image image = Rendered(WithVolume(10.0, 0.0), kMediaNoon, settings);
-  const Image& without = ClearNoon();
+  const HdrImage image = Rendered(WithVolume(10.0, 0.0), kMediaNoon, settings);
+  const HdrImage& without = ClearNoon();
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_GT(image.at(12, 7)[c], 0.0F) << "370 m of air";
     EXPECT_LT(image.at(12, 7)[c], 0.1F * without.at(12, 7)[c]);
@@ -435,7 +435,7 @@ TEST(RenderMedia, AGlowingVolumeShinesLikeABlackBody) {
   Scene scene = WithVolume(0.01, 0.0);
   scene.volumes[0].temperature_k = 2000.0;
   scene.medium = tests::WithoutAir(scene.medium);
-  const Image image = Rendered(scene, kMediaNight);
+  const HdrImage image = Rendered(scene, kMediaNight);
   std::vector<double> radiance;
   for (const double nm : scene.medium.wavelengths_nm) {
     radiance.push_back(BlackBodyRadiance(nm, 2000.0) * -std::expm1(-0.6));
@@ -448,9 +448,9 @@ TEST(RenderMedia, AGlowingVolumeShinesLikeABlackBody) {
 TEST(RenderMedia, GlowingVolumeIsDimmedByTheFogBeforeIt) {
   Scene scene = WithVolume(0.01, 0.0);
   scene.volumes[0].temperature_k = 2000.0;
-  const Image clear = Rendered(scene, kMediaNight);
+  const HdrImage clear = Rendered(scene, kMediaNight);
   scene.layers = {FogIn(0.005, 1e5)};
-  const Image foggy = Rendered(scene, kMediaNight);
+  const HdrImage foggy = Rendered(scene, kMediaNight);
   const double left = static_cast<double>(foggy.at(12, 7)[0] / clear.at(12, 7)[0]);
   EXPECT_GT(left, std::exp(-0.005 * 431.0)) << "all of it at its far side";
   EXPECT_LT(left, std::exp(-0.005 * 369.0)) << "all of it at its near side";
@@ -475,7 +475,7 @@ TEST(RenderMedia, FogAndSmokeAreFiniteFromNoonToNight) {
   for (const char* time : {"2026-03-20T12:00:00Z", "2026-03-20T16:30:00Z", "2026-03-20T17:32:00Z",
                            "2026-03-20T17:40:00Z", "2026-03-20T18:10:00Z", "2026-03-20T19:30:00Z",
                            "2026-03-20T23:00:00Z"}) {
-    const Image image = renderer.Render(ParseInstant(time), kSmallMedia);
+    const HdrImage image = renderer.Render(ParseInstant(time), kSmallMedia);
     double sum = 0.0;
     for (const auto& rgb : image.rgb) {
       for (const float value : rgb) EXPECT_TRUE(std::isfinite(value)) << time;
@@ -496,9 +496,9 @@ TEST(RenderMedia, AMissingGridIsNamed) {
 
 TEST(RenderMedia, FogGrowsOutOfClearAirWithoutAStep) {
   Scene scene = WithoutVolume();
-  const Image& a = ClearNoon();
+  const HdrImage& a = ClearNoon();
   scene.layers = {FogIn(1e-8, 30.0)};
-  const Image b = Rendered(scene, kMediaNoon);
+  const HdrImage b = Rendered(scene, kMediaNoon);
   for (std::size_t i = 0; i < a.rgb.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(static_cast<double>(b.rgb[i][c] / a.rgb[i][c]), 1.0, 3e-3);

@@ -58,21 +58,21 @@ TEST(Golden, PicturesAreTheStoredOnes) {
     const fs::path stored = kFolder / (golden.name + ".exr");
     ASSERT_TRUE(fs::exists(stored)) << stored << ": see tests/golden/README.md";
     EXPECT_LE(fs::file_size(stored), 20000U) << "goldens are small";
-    const Image image = ReadExr(stored);
+    const HdrImage image = ReadExr(stored);
     const Scene scene = ReadScene(kFolder / golden.scene);
     const UtcTime instant = InstantFromText(golden.time, {scene.place, scene.zone, scene.time});
     RenderSettings settings;
     settings.width = image.width;
     settings.height = image.height;
     settings.samples_per_pixel = 16;
-    const Image now = RendererOf(golden.scene, scene).Render(instant, settings);
+    const HdrImage now = RendererOf(golden.scene, scene).Render(instant, settings);
     EXPECT_EQ(FaultOfPicture(image, now), "") << golden.name;
   }
 }
 
 /// Returns a smooth picture without details.
-Image Gradient() {
-  Image image(48, 27);
+HdrImage Gradient() {
+  HdrImage image(48, 27);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const auto level = static_cast<float>(100 + 10 * y + x);
@@ -87,40 +87,41 @@ void Scale(std::array<float, 3>& pixel, float by) {
 }
 
 TEST(GoldenTolerance, RoundingOfAnotherCompilerPasses) {
-  Image other = Gradient();
+  HdrImage other = Gradient();
   for (std::size_t i = 0; i < other.rgb.size(); ++i)
     Scale(other.rgb[i], i % 2 == 0 ? 1.00005F : 0.99995F);
   EXPECT_EQ(FaultOfPicture(Gradient(), other), "");
 }
 
 TEST(GoldenTolerance, ARayOverAnEdgeInOneOfTwoHundredPixelsPasses) {
-  Image other = Gradient();
+  HdrImage other = Gradient();
   for (std::size_t i = 7; i < other.rgb.size(); i += 200) Scale(other.rgb[i], 1.01F);
   EXPECT_EQ(FaultOfPicture(Gradient(), other), "");
 }
 
 TEST(GoldenTolerance, HalfAPercentBrighterIsAnotherPicture) {
-  Image other = Gradient();
+  HdrImage other = Gradient();
   for (auto& pixel : other.rgb) Scale(pixel, 1.005F);
   EXPECT_NE(FaultOfPicture(Gradient(), other), "");
 }
 
 TEST(GoldenTolerance, AShiftOfColourIsAnotherPicture) {
-  Image other = Gradient();
+  HdrImage other = Gradient();
   for (auto& pixel : other.rgb) pixel[2] *= 1.01F;
   EXPECT_NE(FaultOfPicture(Gradient(), other), "");
 }
 
 TEST(GoldenTolerance, ASmallWrongPlaceIsAnotherPicture) {
-  Image other = Gradient();
+  HdrImage other = Gradient();
   for (std::size_t i = 0; i < 20; ++i) Scale(other.rgb[i], 1.012F);
   EXPECT_LT(ChangeOf(Gradient(), other).Rms(), PictureTolerance{}.rms);
   EXPECT_NE(FaultOfPicture(Gradient(), other), "") << "20 of 1296 pixels, by 1.2 %";
 }
 
 TEST(GoldenTolerance, OtherSizesAndBrokenPixelsAreNamed) {
-  EXPECT_EQ(FaultOfPicture(Gradient(), Image(27, 48)), "is 27 x 48; the golden picture is 48 x 27");
-  Image broken = Gradient();
+  EXPECT_EQ(FaultOfPicture(Gradient(), HdrImage(27, 48)),
+            "is 27 x 48; the golden picture is 48 x 27");
+  HdrImage broken = Gradient();
   broken.at(3, 3)[1] = std::nanf("");
   EXPECT_EQ(FaultOfPicture(Gradient(), broken), "has a pixel that is not finite");
 }

@@ -40,7 +40,7 @@ RenderSettings Small(int width, int height, EffectSet effects = EffectSet::All()
 }
 
 /// Returns the illuminance by a picture of a narrow field [lx].
-double Lux(const Image& image, double pixel_rad) {
+double Lux(const HdrImage& image, double pixel_rad) {
   double sum = 0.0;
   for (const auto& rgb : image.rgb) sum += tests::Luminance(rgb);
   return sum * pixel_rad * pixel_rad;
@@ -86,7 +86,7 @@ TEST(NightPicture, TrailsHaveTheLuxOfTheirStarAndTheirLength) {
   for (const int side : {24, 60}) {
     const double pixel_rad = 2.0 * std::tan(2.0 * kRadiansPerDegree) / side;
     const auto settings = Small(side, side), dark = Small(side, side, Without({Effect::kStars}));
-    const Image empty = open.Render(kMoonless, dark), trails = open.Render(kMoonless, settings);
+    const HdrImage empty = open.Render(kMoonless, dark), trails = open.Render(kMoonless, settings);
     const double of_star =
         Lux(still.Render(kMoonless, settings), pixel_rad) - Lux(empty, pixel_rad);
     const double of_trail = Lux(trails, pixel_rad) - Lux(empty, pixel_rad);
@@ -112,9 +112,9 @@ TEST(NightPicture, TheMoonDrawsATrailOfItsLight) {
   Scene scene = QuickScene(2.0, moon.azimuth_deg, moon.elevation_deg, 8.0);
   const RenderSettings settings = Small(64, 64);
   const double pixel_rad = 2.0 * std::tan(4.0 * kRadiansPerDegree) / 64;
-  const Image still = SceneRenderer(scene).Render(kFullMoon, settings);
+  const HdrImage still = SceneRenderer(scene).Render(kFullMoon, settings);
   scene.camera.shutter_s = 600.0;
-  const Image open = SceneRenderer(scene).Render(kFullMoon, settings);
+  const HdrImage open = SceneRenderer(scene).Render(kFullMoon, settings);
   EXPECT_NEAR(Lux(open, pixel_rad) / Lux(still, pixel_rad), 1.0, 0.05) << "one ray a pixel";
   int left = 64, right = 0, top = 64, bottom = 0;
   for (int y = 0; y < 64; ++y) {
@@ -138,7 +138,7 @@ TEST(NightPicture, OrionStandsInTheSouthOfAJanuaryNight) {
   const StarView sirius = SiriusAt(kMoonless);
   EXPECT_NEAR(sirius.azimuth, 172.0, 3.0) << "an hour before it culminates";
   const SceneRenderer renderer(QuickScene(2.0, sirius.azimuth, sirius.elevation, 4.0));
-  const Image image = renderer.Render(kMoonless, Small(41, 41));
+  const HdrImage image = renderer.Render(kMoonless, Small(41, 41));
   int x_of_brightest = 0, y_of_brightest = 0;
   for (int y = 0; y < 41; ++y) {
     for (int x = 0; x < 41; ++x) {
@@ -163,7 +163,7 @@ TEST(NightPicture, MoonlitGroundHasTheLuminanceOfItsLux) {
   Scene scene = QuickScene(1000.0, 40.0, -80.0, 10.0);
   scene.medium.ground_albedo.assign(scene.medium.wavelengths_nm.size(), 0.2);
   const SceneRenderer renderer(scene);
-  const Image ground = renderer.Render(kFullMoon, Small(4, 4));
+  const HdrImage ground = renderer.Render(kFullMoon, Small(4, 4));
   const double lambertian = 0.2 / kPi * renderer.Illuminance(kFullMoon);
   EXPECT_NEAR(tests::Luminance(ground.at(2, 2)) / lambertian, 1.0, 0.15)
       << "but for a kilometre of air before it";
@@ -211,7 +211,7 @@ TEST(NightPicture, DuskFallsWithoutAStepWhereTheMoonBegins) {
 }
 
 /// Returns a small picture of the night sky around a direction.
-Image NightAround(double azimuth_rad, double elevation_rad, const UtcTime& instant) {
+HdrImage NightAround(double azimuth_rad, double elevation_rad, const UtcTime& instant) {
   const Scene scene =
       QuickScene(2.0, azimuth_rad / kRadiansPerDegree, elevation_rad / kRadiansPerDegree, 2.0);
   RenderSettings settings;
@@ -226,7 +226,7 @@ struct Bright {
   int count = 0;
 };
 
-Bright BrightOf(const Image& image) {
+Bright BrightOf(const HdrImage& image) {
   float most = 0.0F;
   for (const auto& pixel : image.rgb) most = std::max(most, pixel[1]);
   Bright bright;
@@ -300,7 +300,7 @@ CameraPose Towards(double heading, double pitch, double fov) {
   return {Burgos(), camera.heading_rad, camera.pitch_rad, 0.0, camera.fov_rad};
 }
 
-Image EclipseRendered(const CameraPose& pose, const UtcTime& instant, int size, int rays,
+HdrImage EclipseRendered(const CameraPose& pose, const UtcTime& instant, int size, int rays,
                       Moon moon = Moon::kThere) {
   RenderSettings settings;
   settings.width = settings.height = size;
@@ -310,7 +310,7 @@ Image EclipseRendered(const CameraPose& pose, const UtcTime& instant, int size, 
   return OverBurgos(moon).Render(sample, settings);
 }
 
-double Mean(const Image& image, std::size_t channel) {
+double Mean(const HdrImage& image, std::size_t channel) {
   double sum = 0.0;
   for (const auto& pixel : image.rgb) sum += static_cast<double>(pixel[channel]);
   return sum / static_cast<double>(image.rgb.size());
@@ -330,8 +330,8 @@ CameraPose TowardsSun(const UtcTime& instant, double fov) {
 TEST(EclipsePicture, SkyIsDarkerByTheLightThatTheMoonCovers) {
   const UtcTime instant = ParseInstant("2026-08-12T18:23:00Z");
   const CameraPose pose = Towards(100.0, 10.0, 60.0);
-  const Image eclipsed = EclipseRendered(pose, instant, 24, 1);
-  const Image whole = EclipseRendered(pose, instant, 24, 1, Moon::kAbsent);
+  const HdrImage eclipsed = EclipseRendered(pose, instant, 24, 1);
+  const HdrImage whole = EclipseRendered(pose, instant, 24, 1, Moon::kAbsent);
   const double green = Mean(eclipsed, 1) / Mean(whole, 1);
   EXPECT_NEAR(Left(instant, 550.0), 0.1, 0.02);
   EXPECT_NEAR(green / Left(instant, 550.0), 1.0, 0.01)
@@ -357,7 +357,7 @@ TEST(EclipsePicture, TheCrescentFacesAwayFromTheMoon) {
     const UtcTime instant = ParseInstant(utc);
     const SunInSky sun = ApparentSunAt(Burgos(), instant);
     const MoonPosition moon = ApparentMoonAt(Burgos(), instant, AlmanacAir());
-    const Image image = EclipseRendered(TowardsSun(instant, 0.7), instant, 64, 4);
+    const HdrImage image = EclipseRendered(TowardsSun(instant, 0.7), instant, 64, 4);
     double x = 0.0, y = 0.0;
     for (int row = 0; row < 64; ++row) {
       for (int column = 0; column < 64; ++column) {
@@ -378,7 +378,7 @@ TEST(EclipsePicture, TotalityIsDarkAndFinite) {
   ASSERT_EQ(Left(middle, 550.0), 0.0);
   const SunInSky sun = ApparentSunAt(Burgos(), middle);
   const CameraPose pose = Towards(sun.azimuth_deg, 20.0, 60.0);
-  const Image dark = EclipseRendered(pose, middle, 32, 2);
+  const HdrImage dark = EclipseRendered(pose, middle, 32, 2);
   for (const auto& pixel : dark.rgb) {
     for (const float value : pixel) {
       EXPECT_TRUE(std::isfinite(value));

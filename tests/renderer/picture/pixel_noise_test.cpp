@@ -86,8 +86,8 @@ class NoisyPicture : public TemporaryFolder {
   }
 
   /// Returns the picture of 256 rays per pixel.
-  const Image& Truth() {
-    static const Image kTruth = Ridges().Render(kEvening, Small(256));
+  const HdrImage& Truth() {
+    static const HdrImage kTruth = Ridges().Render(kEvening, Small(256));
     return kTruth;
   }
   static RenderSettings Small(int rays) {
@@ -101,7 +101,7 @@ class NoisyPicture : public TemporaryFolder {
 };
 
 TEST_F(NoisyPicture, NoiseIsWithinTheLimitAndBelowThatOfEqualRays) {
-  const Image& truth = Truth();
+  const HdrImage& truth = Truth();
   const CountedPicture held = Ridges().RenderCounted(kEvening, Held(0.03));
   const double noise = ChangeOf(truth, held.image).Rms();
   const auto as_many = static_cast<int>(held.rays.rays / (32U * 18U)) + 1;
@@ -136,8 +136,8 @@ TEST_F(NoisyPicture, IsTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST_F(NoisyPicture, HasTheBrightnessOfOneWithManyRays) {
-  const Image& truth = Truth();
-  const Image held = Ridges().Render(kEvening, Held(0.05));
+  const HdrImage& truth = Truth();
+  const HdrImage held = Ridges().Render(kEvening, Held(0.05));
   double difference = 0.0, light = 0.0;
   for (std::size_t i = 0; i < truth.rgb.size(); ++i) {
     difference += tests::Luminance(held.rgb[i]) - tests::Luminance(truth.rgb[i]);
@@ -151,9 +151,9 @@ TEST_F(NoisyPicture, SharedAirIsThatOfEachPixel) {
   RenderSettings settings = Small(kMostRaysForNoise);
   settings.layers = {PictureLayer::kInscatter};
   settings.noise = 1e-8;
-  const Image shared = Ridges().Render(kEvening, settings);
+  const HdrImage shared = Ridges().Render(kEvening, settings);
   settings.share_air_of_pixels = false;
-  const Image alone = Ridges().Render(kEvening, settings);
+  const HdrImage alone = Ridges().Render(kEvening, settings);
   double square = 0.0, mean = 0.0;
   for (std::size_t i = 0; i < alone.rgb.size(); ++i) {
     const double truth = static_cast<double>(alone.layers[1].values[i]);
@@ -189,11 +189,11 @@ TEST_F(NoisyPicture, TheSunsLimbCoversPartsOfPixels) {
   scene.camera =
       CameraFromDegrees({1000.0, false}, sun.azimuth_deg + 0.1, sun.elevation_deg, 0.0, 3.0);
   const SceneRenderer renderer(scene);
-  const Image truth = renderer.Render(kEvening, Small(tests::ScaledDown(1024, 512)));
+  const HdrImage truth = renderer.Render(kEvening, Small(tests::ScaledDown(1024, 512)));
   double brightest = 0.0;
   for (const auto& pixel : truth.rgb) brightest = std::max(brightest, tests::Luminance(pixel));
   EXPECT_GT(brightest, 1e6) << "it is there";
-  const auto worst = [&](const Image& image) {
+  const auto worst = [&](const HdrImage& image) {
     double most = 0.0;
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
       most =

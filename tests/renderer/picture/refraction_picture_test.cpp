@@ -105,7 +105,7 @@ TEST(RefractedPlaces, OnMarsAlmostNothingIsLifted) {
 
 /// Returns the area of a disk in a picture relative to that of a circle as wide as the disk. Pixels
 /// belong to the disk from a share of the brightest one on.
-double AreaOfCircle(const Image& image, int rows, double share_of_brightest) {
+double AreaOfCircle(const HdrImage& image, int rows, double share_of_brightest) {
   double brightest = 0.0, area = 0.0;
   int left = image.width, right = 0;
   const auto visit = [&](const auto& see) {
@@ -193,7 +193,7 @@ TEST(RefractedPlaces, TheSeaEndsAtTheHorizonOfStraightOrRefractedRays) {
   const double radius = renderer.medium().planet_radius_m;
   for (const bool is_straight : {true, false}) {
     const EffectSet all = EffectSet::All();
-    const Image image = renderer.Render(
+    const HdrImage image = renderer.Render(
         kRefractedNoon, {.width = 8,
                          .height = 400,
                          .samples_per_pixel = 1,
@@ -230,7 +230,7 @@ TEST_F(RefractedTerrain, HiddenPeaksAppearWhereTheRayEquationSays) {
                             .effects = EffectSet::All(),
                             .layers = {PictureLayer::kDepth}};
     const CameraRays camera(scene.camera, settings.width, settings.height);
-    const auto far_pixels = [&](const Image& image) {
+    const auto far_pixels = [&](const HdrImage& image) {
       std::vector<int> rows;
       for (int y = 0; y < settings.height; ++y) {
         const double depth_m =
@@ -254,7 +254,7 @@ TEST(RefractedPlaces, WideViewsAreRefractedForTheirSmallestPixels) {
   const SceneRenderer renderer(QuickScene(10e3, 0.0, 0.0, 150.0));
   RenderSettings settings{
       .width = 96, .height = 24, .samples_per_pixel = 1, .air_nodes = 4, .layers = {}};
-  const Image bent = renderer.Render(kRefractedNoon, settings);
+  const HdrImage bent = renderer.Render(kRefractedNoon, settings);
   settings.effects = settings.effects.Without(Effect::kRefraction);
   EXPECT_NE(bent.rgb, renderer.Render(kRefractedNoon, settings).rgb);
 }
@@ -265,14 +265,14 @@ TEST_F(RefractedTerrain, ShiftsBelowHalfAPixelAreIgnored) {
   const SceneRenderer renderer(SceneOf(peak, 1.0, 6.0, radius_m, folder_));
   RenderSettings settings{
       .width = 64, .height = 36, .samples_per_pixel = 1, .air_nodes = 4, .layers = {}};
-  const Image bent = renderer.Render(kRefractedNoon, settings);
+  const HdrImage bent = renderer.Render(kRefractedNoon, settings);
   settings.effects = settings.effects.Without(Effect::kRefraction);
   EXPECT_EQ(bent.rgb, renderer.Render(kRefractedNoon, settings).rgb) << "pixels of 5.6'";
 }
 
 /// Returns the height of the middle of an aureole above that of a square picture [rad]. The aureole
 /// is light scattered once by haze alone; of two columns, one goes through the middle.
-double MiddleOfAureole(const Image& image, double pixel_rad) {
+double MiddleOfAureole(const HdrImage& image, double pixel_rad) {
   const int middle = image.width / 2, aside = image.width / 8;
   // The ratio of radiances in both columns is that of the phase function; they are otherwise alike.
   const auto contrast = [&](int up) {
@@ -373,7 +373,7 @@ TEST(TwilightAir, TheAureoleSurroundsTheVisibleDisk) {
                           .layers = {}};
   for (const Effect effect : {Effect::kMultipleScattering, Effect::kMolecules, Effect::kNightSky})
     settings.effects = settings.effects.Without(effect);
-  const Image image = renderer.Render(evening, settings);
+  const HdrImage image = renderer.Render(evening, settings);
   EXPECT_NEAR(MiddleOfAureole(image, kFov_deg * kRadiansPerDegree / settings.width), 0.0,
               0.1 * kArcminute)
       << "rays of a pixel fall on different places of it";

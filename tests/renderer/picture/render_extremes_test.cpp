@@ -44,7 +44,7 @@ CameraSample CameraSampleFrom(double height_m, double pitch, double roll, double
   return camera_sample;
 }
 
-void ExpectLightEverywhere(const Image& image) {
+void ExpectLightEverywhere(const HdrImage& image) {
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
     for (const float channel : image.rgb[i]) EXPECT_TRUE(std::isfinite(channel)) << "pixel " << i;
     EXPECT_GT(Luminance(image.rgb[i]), 1.0) << "by day nothing is black; pixel " << i;
@@ -54,7 +54,7 @@ void ExpectLightEverywhere(const Image& image) {
 // Hard case 1.
 TEST(RenderExtremes, OnTheGroundTheHorizonIsTheHorizontal) {
   const SceneRenderer renderer(QuickScene(0.0, 40.0, 0.0, 2.0));
-  const Image image = renderer.Render(kExtremeNoon, Settings(2, 100, {PictureLayer::kDepth}));
+  const HdrImage image = renderer.Render(kExtremeNoon, Settings(2, 100, {PictureLayer::kDepth}));
   ExpectLightEverywhere(image);
   for (int y = 0; y < image.height; ++y) {
     const float depth = image.layers[0].values[static_cast<std::size_t>(2 * y)];
@@ -63,7 +63,7 @@ TEST(RenderExtremes, OnTheGroundTheHorizonIsTheHorizontal) {
 }
 
 /// Returns the mean luminance of each pixel, from a picture that is `finer` times as fine.
-std::vector<double> MeansOf(const Image& image, int finer) {
+std::vector<double> MeansOf(const HdrImage& image, int finer) {
   const int columns = image.width / finer, rows = image.height / finer;
   std::vector<double> means(static_cast<std::size_t>(columns * rows));
   for (int y = 0; y < image.height; ++y) {
@@ -86,7 +86,7 @@ void ExpectSmoothLimb(double height_m, double pitch, double fov, int rows) {
     settings.filter = PixelFilter::Kind::kBox;
     settings.samples_per_pixel = is_noise_bounded ? 16 : 256;
     if (is_noise_bounded) settings.noise = 0.005;
-    const Image image = renderer.Render(kExtremeNoon, settings);
+    const HdrImage image = renderer.Render(kExtremeNoon, settings);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       EXPECT_NEAR(Luminance(image.rgb[i]), expected[i], 0.05 * expected[i] + 0.05)
           << height_m << " m, row " << i / kColumns << ": rays of the noise asked for";
@@ -149,13 +149,13 @@ class RenderExtremesFiles : public TemporaryFolder {};
 
 // Hard case 2.
 TEST_F(RenderExtremesFiles, BelowTheSeaTheSkyIsThatOfTheShore) {
-  const Image shore =
+  const HdrImage shore =
       SceneRenderer(QuickScene(0.0, 40.0, 55.0, 30.0)).Render(kExtremeNoon, Settings(12, 8));
   const std::vector<double> depths_m{430.0, 11000.0};
   for (const double depth_m : tests::ScaledDown(depths_m, {depths_m.back()})) {
     const SceneRenderer renderer(AtTheBottomOf(folder_ / "sink.obj", depth_m));
     EXPECT_NEAR(renderer.eye_height_m(), 2.0 - depth_m, 1e-3);
-    const Image sky = renderer.Render(kExtremeNoon, Settings(12, 8));
+    const HdrImage sky = renderer.Render(kExtremeNoon, Settings(12, 8));
     for (std::size_t i = 0; i < sky.rgb.size(); ++i) {
       EXPECT_NEAR(Luminance(sky.rgb[i]) / Luminance(shore.rgb[i]), 1.0, 1e-3)
           << depth_m << " m down, pixel " << i << ": the ground's shape does not change the sky";
@@ -181,7 +181,7 @@ TEST(RenderExtremes, WithoutAirTheSunsDiskStandsInABlackSky) {
   const Scene scene = WithoutAir(2.0, sun.azimuth_deg, sun.elevation_deg, 2.0);
   const SceneRenderer renderer(scene);
   constexpr int kSide = 200;
-  const Image image = renderer.Render(
+  const HdrImage image = renderer.Render(
       kExtremeNoon,
       Settings(kSide, kSide, {PictureLayer::kTransmittance, PictureLayer::kInscatter}));
   const CameraRays camera(scene.camera, kSide, kSide);
@@ -223,7 +223,7 @@ RenderSettings InSunlightAlone(RenderSettings settings) {
 TEST(RenderExtremes, WithoutAirGroundIsSunlitAndNightsAreBlack) {
   const SceneRenderer renderer(WithoutAir(1000.0, 40.0, -30.0, 40.0));
   ExpectLightEverywhere(renderer.Render(kExtremeNoon, Settings(8, 8)));
-  const Image night =
+  const HdrImage night =
       renderer.Render(ParseInstant("2026-06-21T23:30:00Z"), InSunlightAlone(Settings(8, 8)));
   for (const auto& rgb : night.rgb) EXPECT_EQ(rgb, (std::array<float, 3>{}));
   const SunInSky sun = renderer.ApparentSun(kExtremeNoon);
@@ -240,10 +240,10 @@ TEST_F(RenderExtremesFiles, DeepTwilightHasNoBands) {
   for (const double heading : {310.0, 130.0}) {
     const SceneRenderer renderer(QuickScene(2.0, heading, 14.0, 0.1));
     const double noon = Luminance(renderer.Render(kExtremeNoon, column).at(0, kRows / 2));
-    const Image image = renderer.Render(ParseInstant("2026-06-21T20:50:00Z"), column);
+    const HdrImage image = renderer.Render(ParseInstant("2026-06-21T20:50:00Z"), column);
     const double dusk = Luminance(image.at(0, kRows / 2));
     WriteExr(folder_ / "dusk.exr", image, {});
-    const Image kept = ReadExr(folder_ / "dusk.exr");
+    const HdrImage kept = ReadExr(folder_ / "dusk.exr");
     EXPECT_EQ(kept.rgb, image.rgb);
     // Exposed a million times longer, the light changes from pixel to pixel as evenly as by day.
     std::vector<double> stops;
@@ -270,9 +270,9 @@ TEST(RenderExtremes, OnePixelAndOneColumnArePartsOfWiderPictures) {
     for (const double roll : {0.0, 90.0}) {
       // The narrow picture is a third of one that is three times as wide.
       const CameraSample narrow = CameraSampleFrom(100.0, 10.0, roll, FovOf(TanHalf(fov) / 3.0));
-      const Image three = renderer.Render(CameraSampleFrom(100.0, 10.0, roll, fov),
-                                          Settings(3, 5, {PictureLayer::kDepth}));
-      const Image column = renderer.Render(narrow, Settings(1, 5));
+      const HdrImage three = renderer.Render(CameraSampleFrom(100.0, 10.0, roll, fov),
+                                             Settings(3, 5, {PictureLayer::kDepth}));
+      const HdrImage column = renderer.Render(narrow, Settings(1, 5));
       for (int y = 0; y < 5; ++y) {
         const bool sky = std::isinf(three.layers[0].values[static_cast<std::size_t>(3 * y + 1)]);
         EXPECT_NEAR(Luminance(column.at(0, y)) / Luminance(three.at(1, y)), 1.0, sky ? 1e-4 : 1e-2)
@@ -290,8 +290,8 @@ TEST(RenderExtremes, ACameraOnItsSideSeesRowsAsColumns) {
   constexpr double kFov = 10.0;
   const SceneRenderer renderer(QuickScene(100.0, 40.0, 30.0, 60.0));
   const CameraSample upright = CameraSampleFrom(100.0, 30.0, 0.0, FovOf(kPixels * TanHalf(kFov)));
-  const Image row = renderer.Render(upright, Settings(kPixels, 1));
-  const Image column =
+  const HdrImage row = renderer.Render(upright, Settings(kPixels, 1));
+  const HdrImage column =
       renderer.Render(CameraSampleFrom(100.0, 30.0, 90.0, kFov), Settings(1, kPixels));
   for (int i = 0; i < kPixels; ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -301,7 +301,7 @@ TEST(RenderExtremes, ACameraOnItsSideSeesRowsAsColumns) {
   }
 }
 
-int BrightestColumn(const Image& image) {
+int BrightestColumn(const HdrImage& image) {
   const auto first_row = image.rgb.begin();
   return static_cast<int>(
       std::max_element(first_row, first_row + image.width,
@@ -318,8 +318,8 @@ TEST(RenderExtremes, SixteenThousandColumnsAreSmooth) {
   for (const double fov : {1.0, 179.0, 360.0}) {
     const bool closes = fov == 360.0;
     // The upper one of two rows of a panorama looks 45 degrees up.
-    const Image image = closes ? renderer.Render(kExtremeNoon, Settings(kWidth, 2))
-                               : renderer.Render(CameraSampleFrom(100.0, 20.0, 0.0, fov), wide);
+    const HdrImage image = closes ? renderer.Render(kExtremeNoon, Settings(kWidth, 2))
+                                  : renderer.Render(CameraSampleFrom(100.0, 20.0, 0.0, fov), wide);
     ExpectLightEverywhere(image);
     // The disk of the high sun stands in 100 columns of a panorama, and the pixel filter reaches
     // across the pole to the opposite ones.

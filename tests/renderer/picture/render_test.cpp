@@ -44,7 +44,7 @@ const RenderSettings kSmall{
 TEST(Render, SkyPixelsAreReferenceSingleScatteringPlusTheRest) {
   const SceneRenderer renderer(QuickScene(1000.0, 180.0, 20.0, 40.0));
   const UtcTime noon = ParseInstant("2026-06-21T10:00:00Z");
-  const Image image = renderer.Render(noon, kSmall);
+  const HdrImage image = renderer.Render(noon, kSmall);
   const SunInSky sun = renderer.ApparentSun(noon);
   const Medium& medium = renderer.medium();
   const MultipleScattering multiple_scattering(medium);
@@ -74,7 +74,7 @@ TEST(Render, SkyPixelsAreReferenceSingleScatteringPlusTheRest) {
 TEST(Render, NoonSkyHasThePublishedOrderOfLuminance) {
   // Clear zenith skies at high sun: 1e3 to 1e4 cd/m^2.
   const SceneRenderer renderer(QuickScene(500.0, 0.0, 60.0, 20.0));
-  const Image image = renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), kSmall);
+  const HdrImage image = renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), kSmall);
   EXPECT_GT(Luminance(image.at(8, 4)), 1e3);
   EXPECT_LT(Luminance(image.at(8, 4)), 1e4);
   EXPECT_GT(image.at(8, 4)[2], image.at(8, 4)[0]) << "the sky is blue";
@@ -108,7 +108,7 @@ CameraPose PoseAt(double latitude, double longitude, double height_m, double hea
           camera.fov_rad};
 }
 
-double MostRelativeDifference(const Image& a, const Image& b) {
+double MostRelativeDifference(const HdrImage& a, const HdrImage& b) {
   double most = 0.0;
   for (std::size_t i = 0; i < a.rgb.size(); ++i) {
     most = std::max(most, std::abs(Luminance(a.rgb[i]) / Luminance(b.rgb[i]) - 1.0));
@@ -145,14 +145,14 @@ TEST(Render, AMovingCameraSeesTheMeanOfItsViews) {
   CameraSample blurred(noon);
   // The camera moves from the sea to above the horizon in 16 steps of half a degree.
   for (int i = 0; i <= 16; ++i) blurred.poses.push_back(pose(-4.0 + 0.5 * i));
-  const Image found = renderer.Render(blurred, settings);
+  const HdrImage found = renderer.Render(blurred, settings);
   std::vector<double> mean(found.rgb.size(), 0.0);
   constexpr int kStills = 32;
   settings.samples_per_pixel = 16;
   for (int i = 0; i < kStills; ++i) {
     CameraSample still(noon);
     still.poses = {pose(-4.0 + 8.0 * (i + 0.5) / kStills)};
-    const Image image = renderer.Render(still, settings);
+    const HdrImage image = renderer.Render(still, settings);
     for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += Luminance(image.rgb[k]) / kStills;
   }
   for (std::size_t k = 0; k < mean.size(); ++k) {
@@ -199,7 +199,7 @@ TEST(Render, TheDiskInThePictureHasTheSunsIlluminance) {
   const SceneRenderer renderer(at_sun);
   const RenderSettings settings{
       .width = 100, .height = 100, .samples_per_pixel = 4, .air_nodes = 8, .layers = {}};
-  const Image image = renderer.Render(noon, settings);
+  const HdrImage image = renderer.Render(noon, settings);
   const double pixel = std::pow(CameraRays(at_sun.camera, 100, 100).PixelAngle(), 2);
   double illuminance = 0.0;
   for (const auto& rgb : image.rgb) illuminance += Luminance(rgb) * pixel;
@@ -225,7 +225,7 @@ double SolidAngleBySum(const CameraRays& camera, int column, int row) {
 }
 
 /// Returns the illuminance that the pixels much brighter than the sky around the sun add up to.
-double IlluminanceOfBrightPixels(const Image& image, const CameraRays& camera) {
+double IlluminanceOfBrightPixels(const HdrImage& image, const CameraRays& camera) {
   double illuminance = 0.0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -268,7 +268,7 @@ TEST(Render, ADiskSmallerThanAPixelHasTheSunsIlluminance) {
     scene.camera = one.camera;
     const SceneRenderer renderer(scene);
     const RenderSettings settings{.width = 48, .height = 27, .samples_per_pixel = 1, .layers = {}};
-    const Image image = renderer.Render(noon, settings);
+    const HdrImage image = renderer.Render(noon, settings);
     EXPECT_NEAR(IlluminanceOfBrightPixels(image, CameraRays(one.camera, 48, 27)) /
                     SunIlluminance(renderer, sun),
                 1.0, 0.01)
@@ -286,7 +286,7 @@ TEST(Render, ASmallDiskIsFoundWithABoundOnTheNoise) {
   const SceneRenderer renderer(at_sun);
   RenderSettings settings{.width = 48, .height = 27, .samples_per_pixel = 4, .layers = {}};
   settings.noise = 0.02;
-  const Image image = renderer.Render(noon, settings);
+  const HdrImage image = renderer.Render(noon, settings);
   EXPECT_NEAR(IlluminanceOfBrightPixels(image, CameraRays(at_sun.camera, 48, 27)) /
                   SunIlluminance(renderer, sun),
               1.0, 0.01)
@@ -314,12 +314,12 @@ TEST(Render, AMovingCameraBlursADiskSmallerThanAPixel) {
     return renderer.Render(sample, settings);
   };
   const CameraRays camera(view(0.0), 48, 27);
-  const auto brightest = [](const Image& image) {
+  const auto brightest = [](const HdrImage& image) {
     double most = 0.0;
     for (const auto& rgb : image.rgb) most = std::max(most, Luminance(rgb));
     return most;
   };
-  const Image still = render(0.001), moved = render(20.0);
+  const HdrImage still = render(0.001), moved = render(20.0);
   EXPECT_NEAR(IlluminanceOfBrightPixels(moved, camera) / IlluminanceOfBrightPixels(still, camera),
               1.0, 0.01);
   EXPECT_LT(brightest(moved), 0.5 * brightest(still)) << "a trail over many pixels";
@@ -344,7 +344,7 @@ TEST_F(RenderOfFiles, SummitOfFujiIsLitBeforeTheLakeBelow) {
                                 .layers = {PictureLayer::kDepth, PictureLayer::kSunVisibility}};
   const UtcTime sunrise =
       *FindSunEvent(SunEvent::kSunrise, scene.place, ParseInstant("2026-01-01T03:00:00Z"));
-  const auto lit_share = [&](const Image& image, int first_row, int last_row) {
+  const auto lit_share = [&](const HdrImage& image, int first_row, int last_row) {
     double lit = 0.0, ground = 0.0;
     for (int y = first_row; y < last_row; ++y) {
       for (int x = 0; x < 60; ++x) {
@@ -357,7 +357,7 @@ TEST_F(RenderOfFiles, SummitOfFujiIsLitBeforeTheLakeBelow) {
     return ground > 0.0 ? lit / ground : 0.0;
   };
   // From 3776 m the sea horizon is 2 degrees lower, which the sun climbs in ten minutes.
-  const Image lit = renderer.Render(AddSeconds(sunrise, -300.0), settings);
+  const HdrImage lit = renderer.Render(AddSeconds(sunrise, -300.0), settings);
   EXPECT_GT(lit_share(lit, 0, 30), 0.01) << "the summit catches the sun";
   EXPECT_EQ(lit_share(lit, 40, 60), 0.0) << "the foot lies in shadow";
   EXPECT_EQ(lit_share(renderer.Render(AddSeconds(sunrise, -900.0), settings), 0, 60), 0.0)
@@ -389,7 +389,7 @@ TEST(Render, TheScotopicLayerIsThatOfTheRods) {
   const SceneRenderer renderer(QuickScene(1000.0, 180.0, 20.0, 40.0));
   RenderSettings settings = kSmall;
   settings.layers = {PictureLayer::kScotopic};
-  const Image image = renderer.Render(ParseInstant("2026-06-21T10:00:00Z"), settings);
+  const HdrImage image = renderer.Render(ParseInstant("2026-06-21T10:00:00Z"), settings);
   ASSERT_EQ(image.layers.size(), 1U);
   EXPECT_EQ(image.layers[0].name, kScotopicChannel);
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
@@ -401,8 +401,8 @@ TEST(Render, TheScotopicLayerIsThatOfTheRods) {
 
 const UtcTime kPolarisedMorning = ParseInstant("2026-06-21T06:00:00Z");
 
-Image Through(Scene scene, std::optional<double> polariser_deg, int width, int height,
-              const std::vector<PictureLayer>& layers = {}) {
+HdrImage Through(Scene scene, std::optional<double> polariser_deg, int width, int height,
+                 const std::vector<PictureLayer>& layers = {}) {
   if (polariser_deg) scene.camera.polariser_rad = *polariser_deg * kRadiansPerDegree;
   return SceneRenderer(scene).Render(kPolarisedMorning, {.width = width,
                                                          .height = height,
@@ -414,8 +414,8 @@ Image Through(Scene scene, std::optional<double> polariser_deg, int width, int h
 TEST(Polariser, HalvesUnpolarisedLightToTheLastBit) {
   Scene scene = QuickScene(300.0, 60.0, 0.0, 90.0);
   scene.medium.polarised = false;
-  const Image bare = Through(scene, std::nullopt, 16, 9);
-  const Image through = Through(scene, 30.0, 16, 9);
+  const HdrImage bare = Through(scene, std::nullopt, 16, 9);
+  const HdrImage through = Through(scene, 30.0, 16, 9);
   for (std::size_t i = 0; i < bare.rgb.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(through.rgb[i][c], 0.5F * bare.rgb[i][c]);
   }
@@ -457,9 +457,9 @@ TEST(Polariser, LightOfTheSkyVibratesAcrossThePlaneOfTheSun) {
   const auto through = [&](std::optional<double> angle) {
     return Through(scene, angle, kWidth, kHeight);
   };
-  const Image upright = through(0.0), level = through(90.0), right = through(45.0),
-              left = through(-45.0);
-  const Image bare =
+  const HdrImage upright = through(0.0), level = through(90.0), right = through(45.0),
+                 left = through(-45.0);
+  const HdrImage bare =
       Through(scene, std::nullopt, kWidth, kHeight,
               {PictureLayer::kStokesQ, PictureLayer::kStokesU, PictureLayer::kPolarisation});
   const auto layer = [&](std::size_t channel, int x, int y) {
@@ -506,7 +506,7 @@ TEST(Polariser, RemovesReflectionsOfTheSeaAtBrewstersAngle) {
   scene.ground.kind = GroundCover::Kind::kWater;
   scene.ground.wind_m_per_s = 1.0;
   const auto red = [&](double angle) {  // water itself sends none
-    const Image image = Through(scene, angle, 4, 4);
+    const HdrImage image = Through(scene, angle, 4, 4);
     double sum = 0.0;
     for (const auto& pixel : image.rgb) sum += static_cast<double>(pixel[0]);
     return sum;

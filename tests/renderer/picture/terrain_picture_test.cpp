@@ -46,7 +46,7 @@ double MeanLuminance(const SceneRenderer& renderer, const CameraSample& camera_s
                      EffectSet effects = EffectSet::All()) {
   RenderSettings settings = kSmallGround;
   settings.effects = effects;
-  const Image image = renderer.Render(camera_sample, settings);
+  const HdrImage image = renderer.Render(camera_sample, settings);
   double sum = 0.0;
   for (const auto& rgb : image.rgb) sum += Luminance(rgb) / static_cast<double>(image.rgb.size());
   return sum;
@@ -144,14 +144,14 @@ TEST_F(Valley, HasTheSameBytesForAnyNumberOfThreads) {
   RenderSettings settings = kSmallGround;
   settings.samples_per_pixel = tests::ScaledDown(7, 3);
   settings.layers = {PictureLayer::kDepth, PictureLayer::kLamps};
-  const Image image = tests::SameForAnyNumberOfThreads(
+  const HdrImage image = tests::SameForAnyNumberOfThreads(
       [&] { return SceneRenderer(scene).Render(camera_sample, settings); });
   double lamps = 0.0;
   for (const float value : image.layers[1].values) lamps += static_cast<double>(value);
   EXPECT_GT(lamps, 0.0) << "the lamp is in the picture";
 }
 
-double InscatterAt(const Image& image, int x, int y) {
+double InscatterAt(const HdrImage& image, int x, int y) {
   const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                             static_cast<std::size_t>(x);
   return Luminance({image.layers[0].values[pixel], image.layers[1].values[pixel],
@@ -170,9 +170,9 @@ TEST(RenderAir, SharedAirOfAPixelIsRightToATenthOfAPercent) {
   RenderSettings settings{
       .width = 32, .height = 18, .samples_per_pixel = 16, .air_nodes = 12, .layers = {}};
   settings.layers = {PictureLayer::kInscatter};
-  const Image shared = renderer.Render(kRangeMorning, settings);
+  const HdrImage shared = renderer.Render(kRangeMorning, settings);
   settings.share_air = false;
-  const Image alone = renderer.Render(kRangeMorning, settings);
+  const HdrImage alone = renderer.Render(kRangeMorning, settings);
   double square = 0.0;
   double mean = 0.0;
   for (int y = 0; y < shared.height; ++y) {
@@ -200,9 +200,9 @@ TEST_F(RenderAirFiles, ShadedAirBeforeAMountainHasNoGlow) {
   RenderSettings settings{
       .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 12, .layers = {}};
   settings.layers = {PictureLayer::kInscatter};
-  const Image shaded = renderer.Render(kRangeMorning, settings);
+  const HdrImage shaded = renderer.Render(kRangeMorning, settings);
   settings.effects = settings.effects.Without(Effect::kShafts);
-  const Image glowing = renderer.Render(kRangeMorning, settings);
+  const HdrImage glowing = renderer.Render(kRangeMorning, settings);
   EXPECT_LT(InscatterAt(shaded, 8, 4), 0.35 * InscatterAt(glowing, 8, 4))
       << "what is left was scattered before it came";
   EXPECT_GT(InscatterAt(shaded, 8, 4), 0.0);
@@ -222,7 +222,7 @@ TEST(RenderAir, TheSeaHidesTheFootOfDistantMountains) {
       .air_nodes = 8,
       .effects = {Effect::kRefraction, Effect::kMolecules, Effect::kAerosol, Effect::kOzone},
       .layers = {PictureLayer::kDepth}};
-  const Image image = renderer.Render(ParseInstant("2026-06-21T10:00:00Z"), settings);
+  const HdrImage image = renderer.Render(ParseInstant("2026-06-21T10:00:00Z"), settings);
   const CameraRays camera(scene.camera, 5, 200);
   const double dip = -RefractedView(renderer.medium(), 10.0).horizon_rad();
   int mountains = 0;
@@ -256,7 +256,7 @@ TEST_F(RenderAirFiles, ARidgeOfNoThicknessHasADarkSide) {
     settings.effects = settings.effects.Without(Effect::kMultipleScattering)
                            .Without(Effect::kSkylight)
                            .Without(Effect::kBounce);
-    const Image image = renderer.Render(kRangeMorning, settings);
+    const HdrImage image = renderer.Render(kRangeMorning, settings);
     for (int y = 0; y < image.height; ++y) {
       for (int x = 0; x < image.width; ++x) {
         const std::size_t pixel = static_cast<std::size_t>(y * image.width + x);
@@ -330,7 +330,7 @@ TEST_F(Terminator, SunlightEndsWhereTheRoundBodyTurnsAway) {
                                 .samples_per_pixel = 1,
                                 .air_nodes = 4,
                                 .layers = {PictureLayer::kSunVisibility}};
-  const Image picture = renderer.Render(evening, settings);
+  const HdrImage picture = renderer.Render(evening, settings);
   const SunInSky sun = renderer.ApparentSun(evening);
   const glm::dvec3 to_sun = EnuFromAngles(sun.elevation_rad(), sun.azimuth_rad()).xyz;
   const CameraRays camera(scene_.camera, settings.width, settings.height);

@@ -13,8 +13,8 @@ namespace {
 constexpr int kLandSide = 10;
 
 /// An even grey of land a kilometre away, all of it in the sun.
-Image EvenLand() {
-  Image image(kLandSide, kLandSide);
+HdrImage EvenLand() {
+  HdrImage image(kLandSide, kLandSide);
   for (auto& pixel : image.rgb) pixel = {100.0F, 100.0F, 100.0F};
   image.layers = {{kDepthChannel, std::vector<float>(kLandSide * kLandSide, 1000.0F)},
                   {"sun_visibility.Y", std::vector<float>(kLandSide * kLandSide, 1.0F)}};
@@ -32,7 +32,7 @@ int EdgeCount(const std::vector<bool>& edges) {
 TEST(ViewDifference, EvenLandHasNoEdges) { EXPECT_EQ(EdgeCount(EdgesOf(EvenLand())), 0); }
 
 TEST(ViewDifference, BesideARidgeASkylineAndAShadowPixelsAreEdges) {
-  Image ridge = EvenLand(), skyline = EvenLand(), shadow = EvenLand();
+  HdrImage ridge = EvenLand(), skyline = EvenLand(), shadow = EvenLand();
   for (int y = 0; y < 5; ++y) {
     for (int x = 0; x < kLandSide; ++x) {
       ridge.layers[0].values[At(x, y)] = 1200.0F;
@@ -40,7 +40,7 @@ TEST(ViewDifference, BesideARidgeASkylineAndAShadowPixelsAreEdges) {
       shadow.layers[1].values[At(x, y)] = 0.8F;
     }
   }
-  for (const Image& image : {ridge, skyline, shadow}) {
+  for (const HdrImage& image : {ridge, skyline, shadow}) {
     const std::vector<bool> edges = EdgesOf(image);
     EXPECT_EQ(EdgeCount(edges), 2 * kLandSide) << "the rows on both sides";
     EXPECT_TRUE(edges[At(3, 4)]);
@@ -49,7 +49,7 @@ TEST(ViewDifference, BesideARidgeASkylineAndAShadowPixelsAreEdges) {
 }
 
 TEST(ViewDifference, LandThatRecedesAndSkyAreNoEdges) {
-  Image image = EvenLand();
+  HdrImage image = EvenLand();
   for (int y = 0; y < kLandSide; ++y) {
     for (int x = 0; x < kLandSide; ++x)
       image.layers[0].values[At(x, y)] = 1000.0F * std::pow(1.04F, static_cast<float>(y));
@@ -60,8 +60,8 @@ TEST(ViewDifference, LandThatRecedesAndSkyAreNoEdges) {
 }
 
 TEST(ViewDifference, OfAKnownDifferenceHasTheKnownNumbers) {
-  const Image reference = EvenLand();
-  Image painted = reference;
+  const HdrImage reference = EvenLand();
+  HdrImage painted = reference;
   EXPECT_EQ(DifferenceOf(reference, painted).Largest(), 0.0);
   for (int i = 0; i < 50; ++i) painted.rgb[static_cast<std::size_t>(i)] = {101.0F, 101.0F, 101.0F};
   const double one_percent = 1.0 / 100.5;
@@ -73,9 +73,9 @@ TEST(ViewDifference, OfAKnownDifferenceHasTheKnownNumbers) {
 }
 
 TEST(ViewDifference, WhatIsOffBesideAnEdgeDoesNotCount) {
-  Image reference = EvenLand();
+  HdrImage reference = EvenLand();
   reference.layers[0].values[At(5, 5)] = INFINITY;
-  Image painted = reference;
+  HdrImage painted = reference;
   painted.rgb[At(4, 6)] = {0.0F, 0.0F, 0.0F};
   const ErrorStatistics is = DifferenceOf(reference, painted);
   EXPECT_EQ(is.Largest(), 0.0);
@@ -83,9 +83,9 @@ TEST(ViewDifference, WhatIsOffBesideAnEdgeDoesNotCount) {
 }
 
 TEST(ViewDifference, WithoutLayersPicturesCannotBeCompared) {
-  const Image bare(kLandSide, kLandSide);
+  const HdrImage bare(kLandSide, kLandSide);
   EXPECT_THROW(static_cast<void>(EdgesOf(bare)), InternalError);
-  EXPECT_THROW(static_cast<void>(DifferenceOf(EvenLand(), Image(3, 3))), InternalError);
+  EXPECT_THROW(static_cast<void>(DifferenceOf(EvenLand(), HdrImage(3, 3))), InternalError);
 }
 
 }  // namespace

@@ -98,8 +98,8 @@ class SeriesRun : public TemporaryFolder {
     source.render = [&](const Frame&, Progress&) { return Even(rgb); };
     Run(source, output, 1);
   }
-  static Image Even(const std::array<double, 3>& rgb) {
-    Image image(16, 9);
+  static HdrImage Even(const std::array<double, 3>& rgb) {
+    HdrImage image(16, 9);
     for (auto& pixel : image.rgb) {
       for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(rgb[c]);
     }
@@ -175,7 +175,7 @@ TEST_F(SeriesRun, SingleFramesAreExposedAsInTheSeries) {
   int previews = 0;
   source.preview = [&](const Frame& frame) {
     ++previews;
-    Image image(4, 3);
+    HdrImage image(4, 3);
     const double jump = frame.number > 4 ? 30.0 : 1.0;
     for (auto& pixel : image.rgb) pixel.fill(static_cast<float>(100.0 * jump));
     return image;
@@ -208,7 +208,7 @@ TEST_F(SeriesRun, WhiteBalanceChangesOnlyTheDevelopedPicture) {
   SeriesOutput output = Output(true);
   output.look.white.kind = WhiteBalance::Kind::kAuto;
   RunColour(LightOf(4000.0), output);
-  const Image light = ReadExr(folder_ / "frame.0001.exr");
+  const HdrImage light = ReadExr(folder_ / "frame.0001.exr");
   EXPECT_GT(light.at(0, 0)[0], 2.0F * light.at(0, 0)[2]) << "light is as it was";
   const DisplayImage shown = ReadPng(folder_ / "frame.0001.png");
   EXPECT_NEAR(shown.rgb[0], shown.rgb[2], 3) << "grey, dithered";
@@ -255,7 +255,7 @@ TEST_F(SeriesRun, AutomaticWhiteBalanceIsSmoothOverAFilm) {
 TEST_F(SeriesRun, NightVisionChangesOnlyTheDevelopedPicture) {
   SeriesSource source = Source();
   source.render = [](const Frame&, Progress&) {
-    Image image = Even({2e-3, 1e-4, 1e-4});
+    HdrImage image = Even({2e-3, 1e-4, 1e-4});
     image.layers.push_back({kScotopicChannel, std::vector<float>(image.rgb.size(), 1e-3F)});
     return image;
   };
@@ -271,7 +271,7 @@ TEST_F(SeriesRun, GlareChangesOnlyTheDevelopedPicture) {
   SeriesSource source = Source();
   source.fov_rad = 0.5;
   source.render = [](const Frame&, Progress&) {
-    Image image = Even({100.0, 100.0, 100.0});
+    HdrImage image = Even({100.0, 100.0, 100.0});
     image.at(8, 4).fill(1e7F);
     return image;
   };
@@ -490,20 +490,20 @@ TEST_F(SeriesRun, AFilmWithoutFfmpegIsRefusedBeforeTheFirstFrame) {
 }
 
 TEST(ContactSheet, ReducingKeepsTheMean) {
-  Image image(640, 360);
+  HdrImage image(640, 360);
   for (int i = 0; i < 360; ++i) image.at(i, i).fill(640.0F);
-  const Image reduced = Reduced(image, 320);
+  const HdrImage reduced = Reduced(image, 320);
   EXPECT_EQ(reduced.width, 320);
   EXPECT_EQ(reduced.height, 180);
   EXPECT_FLOAT_EQ(reduced.at(5, 5)[0], 320.0F) << "two of four pixels are lit";
   EXPECT_EQ(Reduced(image, 1000).width, 640);
-  EXPECT_EQ(Reduced(Image(5000, 1), 100).height, 1);
+  EXPECT_EQ(Reduced(HdrImage(5000, 1), 100).height, 1);
 }
 
 // Hard case 44.
 TEST(ContactSheet, TinyThumbnailsHaveTheirPlace) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 500}, std::pair{16384, 1}}) {
-    const Image small = Reduced(Image(width, height), kThumbnailWidth);
+    const HdrImage small = Reduced(HdrImage(width, height), kThumbnailWidth);
     EXPECT_LE(small.width, kThumbnailWidth);
     DisplayImage white{small.width, small.height, {}};
     white.rgb.assign(3 * small.rgb.size(), 255);

@@ -101,8 +101,8 @@ TEST_F(PatternsOnAPath, ShowTheGroundOfStillsAtTheirPlaces) {
   const Camera& camera = scene_at(53.0, 2500.0).camera;
   far.poses = {
       {Place{53.0, 8.0, 2500.0}, camera.heading_rad, camera.pitch_rad, 0.0, camera.fov_rad}};
-  const Image frame = SceneRenderer(scene_at(52.0, 9000.0), nullptr).Render(far, settings);
-  const Image still = SceneRenderer(scene_at(53.0, 2500.0), nullptr).Render(noon, settings);
+  const HdrImage frame = SceneRenderer(scene_at(52.0, 9000.0), nullptr).Render(far, settings);
+  const HdrImage still = SceneRenderer(scene_at(53.0, 2500.0), nullptr).Render(noon, settings);
   double squares = 0.0;
   for (std::size_t i = 0; i < still.rgb.size(); ++i) {
     const double change = std::log(double{frame.rgb[i][1]} / double{still.rgb[i][1]});

@@ -57,13 +57,13 @@ TEST_F(RenderTargets, SeveralOutputsOfOneDrawAreReadEachInItsOwnFormat) {
 
 TEST_F(RenderTargets, WhatIsPutThereIsReadBack) {
   const RenderTarget target(3, 2, RenderTarget::Depth::kNone);
-  Image image(3, 2);
+  HdrImage image(3, 2);
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
     image.rgb[i] = {static_cast<float>(i), -1.0F, 1e6F};
   }
   target.Write(image);
   EXPECT_EQ(target.Read().rgb, image.rgb);
-  EXPECT_THROW(target.Write(Image(2, 3)), InternalError);
+  EXPECT_THROW(target.Write(HdrImage(2, 3)), InternalError);
 }
 
 TEST_F(RenderTargets, BytesAreOfADevelopedPicture) {
@@ -209,7 +209,7 @@ constexpr const char* kFragment =
     "uniform bool is_triangle; in vec2 where; out vec4 colour;\n"
     "void main() { colour = is_triangle ? vec4(9.0) : vec4(where, 0.0, 1.0); }\n";
 
-Image Painted(const ShaderProgram& program, int width, int height, const glm::dvec4& view) {
+HdrImage Painted(const ShaderProgram& program, int width, int height, const glm::dvec4& view) {
   const RenderTarget target(width, height, RenderTarget::Depth::kNone);
   const GlVertexArray none;
   target.Bind();
@@ -227,13 +227,13 @@ Image Painted(const ShaderProgram& program, int width, int height, const glm::dv
 TEST_F(PaintedTiles, PutTogetherTheyAreThePictureInOnePiece) {
   const ShaderProgram program({{"vertex", kVertex}}, {{"fragment", kFragment}});
   const int width = 37, height = 23;
-  const Image whole = Painted(program, width, height, {0.0, 0.0, 1.0, 1.0});
+  const HdrImage whole = Painted(program, width, height, {0.0, 0.0, 1.0, 1.0});
   TiledPicture picture(width, height, 9);
   for (const TiledPicture::Tile& tile : picture.tiles()) {
     picture.Put(tile,
                 Painted(program, tile.painted.width, tile.painted.height, picture.ViewOf(tile)));
   }
-  const Image together = picture.Take();
+  const HdrImage together = picture.Take();
   int differing = 0, of_triangle = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

@@ -80,7 +80,7 @@ class HudPicture : public Headless {
   static InputFrame Still(int width, int height) { return {{}, {width, height}, 0.02}; }
 
   /// Over a grey of 0.5. Panels need two frames to find their size.
-  static Image Drawn(Hud& hud, const HudModel& model, int width, int height) {
+  static HdrImage Drawn(Hud& hud, const HudModel& model, int width, int height) {
     for (int frame = 0; frame < 3; ++frame) FrameOf(hud, model, Still(width, height));
     const RenderTarget target(width, height, RenderTarget::Depth::kNone);
     target.Bind();
@@ -96,7 +96,7 @@ class HudPicture : public Headless {
     int left, top, right, bottom;
     [[nodiscard]] bool empty() const { return right <= left; }
   };
-  static Box Difference(const Image& a, const Image& b) {
+  static Box Difference(const HdrImage& a, const HdrImage& b) {
     Box box{a.width, a.height, 0, 0};
     const auto row_bytes = static_cast<std::size_t>(a.width) * sizeof(a.rgb[0]);
     for (int y = 0; y < a.height; ++y) {

@@ -60,11 +60,11 @@ TEST_F(HudTest, HiddenItLeavesEveryByteOfThePictureAsItWas) {
   Hud hud;
   hud.Toggle(HudPanel::kHelp);
   hud.ToggleMenu();
-  const Image shown = Drawn(hud, model_, kHudWidth, kHudHeight);
+  const HdrImage shown = Drawn(hud, model_, kHudWidth, kHudHeight);
   hud.ToggleVisible();
-  const Image hidden = Drawn(hud, model_, kHudWidth, kHudHeight);
-  const Image grey = [] {
-    Image image(kHudWidth, kHudHeight);
+  const HdrImage hidden = Drawn(hud, model_, kHudWidth, kHudHeight);
+  const HdrImage grey = [] {
+    HdrImage image(kHudWidth, kHudHeight);
     for (auto& pixel : image.rgb) pixel = {0.5F, 0.5F, 0.5F};
     return image;
   }();
@@ -232,7 +232,7 @@ TEST_F(HudTest, LeavingIsAskedOnce) {
 TEST_F(HudTest, PanelsGrowWithTheScale) {
   Hud once({.scale = 1.0}), twice({.scale = 2.0});
   const auto panel = [&](Hud& hud, int times) {
-    const Image bare = Drawn(hud, model_, times * kHudWidth, times * kHudHeight);
+    const HdrImage bare = Drawn(hud, model_, times * kHudWidth, times * kHudHeight);
     hud.Toggle(HudPanel::kAir);
     return Difference(bare, Drawn(hud, model_, times * kHudWidth, times * kHudHeight));
   };
@@ -254,10 +254,10 @@ TEST_F(HudTest, KeysClosePanelsFirst) {
 TEST_F(HudTest, EveryPanelFitsIntoTheSmallestPicture) {
   for (std::size_t panel = 0; panel < kHudPanels; ++panel) {
     Hud hud;
-    const Image bare = Drawn(hud, model_, 320, 240);
+    const HdrImage bare = Drawn(hud, model_, 320, 240);
     hud.Toggle(static_cast<HudPanel>(panel));
     for (int frame = 0; frame < 4; ++frame) FrameOf(hud, model_, Still(320, 240));
-    const Image with = Drawn(hud, model_, 320, 240);
+    const HdrImage with = Drawn(hud, model_, 320, 240);
     const Box box = Difference(bare, with);
     ASSERT_FALSE(box.empty()) << panel;
     EXPECT_GT(box.left, 0) << panel;
@@ -269,7 +269,7 @@ TEST_F(HudTest, EveryPanelFitsIntoTheSmallestPicture) {
 
 TEST_F(HudTest, PanelsStayInAPictureThatShrinks) {
   Hud hud;
-  const Image bare = Drawn(hud, model_, 320, 240);
+  const HdrImage bare = Drawn(hud, model_, 320, 240);
   hud.Toggle(HudPanel::kAir);  // on the right
   static_cast<void>(Drawn(hud, model_, kHudWidth, kHudHeight));
   const Box box = Difference(bare, Drawn(hud, model_, 320, 240));
@@ -283,7 +283,7 @@ TEST_F(HudTest, ItIsDimAtNight) {
   Hud hud;
   HudModel night = model_;
   night.exposure.ev100 = -4.0;
-  const auto brightest = [](const Image& image) {
+  const auto brightest = [](const HdrImage& image) {
     float most = 0.0F;
     for (const auto& pixel : image.rgb) most = std::max(most, pixel[2]);
     return most;

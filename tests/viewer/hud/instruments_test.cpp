@@ -67,7 +67,7 @@ TEST_F(Instruments, EachTellsOfItsValueAndOfNoOther) {
        },
        0.3, 0.75, 0.7, 0.9}};
   Hud hud;
-  const Image before = Drawn(hud, tests::Flying(), kPanelWidth, kPanelHeight);
+  const HdrImage before = Drawn(hud, tests::Flying(), kPanelWidth, kPanelHeight);
   for (const Told& told : cases) {
     SCOPED_TRACE(told.name);
     HudModel model = tests::Flying();
@@ -98,7 +98,7 @@ bool IsGreen(const std::array<float, 3>& pixel) {
 }
 
 /// Elevation [rad] of the middle of the green line that a column crosses near `near_y`.
-std::optional<double> ElevationOfLine(const Image& image, const HudFlight& flight, int x,
+std::optional<double> ElevationOfLine(const HdrImage& image, const HudFlight& flight, int x,
                                       int near_y) {
   constexpr int kReach = 12;
   double sum = 0.0;
@@ -127,7 +127,7 @@ TEST_F(Instruments, TheHorizonOfTheLadderLiesOnTheHorizon) {
     model.flight.fov_rad = attitude.fov_deg * kRadiansPerDegree;
     SCOPED_TRACE(fmt::format("pitch {} roll {} view {}", attitude.pitch_deg, attitude.roll_deg,
                              attitude.fov_deg));
-    const Image image = Drawn(hud, model, kPanelWidth, kPanelHeight);
+    const HdrImage image = Drawn(hud, model, kPanelWidth, kPanelHeight);
     const double pixel_rad = 2.0 * std::tan(0.5 * model.flight.fov_rad) / kPanelWidth;
     int found = 0;
     for (const double aside : {-0.15, -0.11, 0.11, 0.15}) {
@@ -162,7 +162,7 @@ TEST_F(Instruments, TwiceTheScaleIsTheSameOnTwiceTheDots) {
 
 TEST_F(Instruments, TheSmallestPictureHasNumbersInsteadOfTapes) {
   Hud hud;
-  const Image full = Drawn(hud, tests::Flying(), 320, 240);
+  const HdrImage full = Drawn(hud, tests::Flying(), 320, 240);
   HudModel faster = tests::Flying();
   *faster.flight.air_speed_m_per_s = 99.0;
   const Box box = Difference(full, Drawn(hud, faster, 320, 240));
@@ -174,7 +174,7 @@ TEST_F(Instruments, TheSmallestPictureHasNumbersInsteadOfTapes) {
 TEST_F(Instruments, ALongMessageIsWrappedIntoTheSmallestPicture) {
   Hud hud;
   HudModel model = tests::Flying();
-  const Image before = Drawn(hud, model, 320, 240);
+  const HdrImage before = Drawn(hud, model, 320, 240);
   model.messages = {
       {"N46E008.hgt has 1201 rows of 3601 samples; the missing ones are taken from "
        "the neighbours of the file",
@@ -195,7 +195,7 @@ TEST_F(Instruments, EveryAttitudeAndViewIsDrawn) {
         model.flight.roll_rad = roll_deg * kRadiansPerDegree;
         model.flight.fov_rad = fov_deg * kRadiansPerDegree;
         model.flight.path = Course{2.0, 0.1};
-        const Image image = Drawn(hud, model, 160, 120);
+        const HdrImage image = Drawn(hud, model, 160, 120);
         EXPECT_FALSE(FaultyValue(image)) << pitch_deg << " " << roll_deg << " " << fov_deg;
       }
     }
@@ -379,7 +379,7 @@ TEST(DayStrip, ColoursAreThoseOfTheSky) {
                        request.place.height_m, std::sin(sun.elevation_rad()));
     const double dip =
         std::acos(medium.planet_radius_m / (medium.planet_radius_m + request.place.height_m));
-    Image sky(1, strip.rows);
+    HdrImage sky(1, strip.rows);
     double mean = 0.0;
     constexpr std::array<double, 6> kElevations_deg{80.0, 50.0, 28.0, 14.0, 6.0, 1.5};
     for (int row = 0; row < strip.rows; ++row) {

@@ -107,7 +107,7 @@ TEST_F(PanelsTest, NoPanelCoversTheClock) {
   for (const Case& shown : tests::ScaledDown(all, {all[1], all[8]})) {
     Hud hud({.scale = shown.scale});
     if (shown.menu) hud.ToggleMenu();
-    const Image bare = Drawn(hud, model_, shown.width, shown.height);
+    const HdrImage bare = Drawn(hud, model_, shown.width, shown.height);
     const Box clock =
         Difference(bare, Drawn(hud, AtAnotherTime(model_), shown.width, shown.height));
     ASSERT_FALSE(clock.empty());
@@ -115,7 +115,7 @@ TEST_F(PanelsTest, NoPanelCoversTheClock) {
       SCOPED_TRACE(::testing::Message() << "panel " << panel << ", " << shown.width << " x "
                                         << shown.height << ", scale " << shown.scale);
       hud.Toggle(static_cast<HudPanel>(panel));
-      Image with = Drawn(hud, model_, shown.width, shown.height);
+      HdrImage with = Drawn(hud, model_, shown.width, shown.height);
       hud.Toggle(static_cast<HudPanel>(panel));
       // The menu, over the clock, marks which panels are open.
       std::copy_n(bare.rgb.begin(), clock.top * shown.width, with.rgb.begin());
@@ -130,7 +130,7 @@ TEST_F(PanelsTest, NoPanelCoversTheClock) {
 
 TEST_F(PanelsTest, PanelsAreSeenInASmallPictureWithTheLargestLetters) {
   Hud hud({.scale = 8.0});
-  const Image bare = Drawn(hud, model_, 320, 240);
+  const HdrImage bare = Drawn(hud, model_, 320, 240);
   for (std::size_t panel = 0; panel < kHudPanels; ++panel) {
     hud.Toggle(static_cast<HudPanel>(panel));
     static_cast<void>(Drawn(hud, model_, 320, 240));
@@ -143,7 +143,7 @@ TEST_F(PanelsTest, PanelsAreSeenInASmallPictureWithTheLargestLetters) {
 
 TEST_F(PanelsTest, APanelThatIsDraggedOverTheClockComesBack) {
   Hud hud;
-  const Image bare = Drawn(hud, model_, kPictureWidth, kPictureHeight);
+  const HdrImage bare = Drawn(hud, model_, kPictureWidth, kPictureHeight);
   const Box clock =
       Difference(bare, Drawn(hud, AtAnotherTime(model_), kPictureWidth, kPictureHeight));
   hud.Toggle(HudPanel::kAir);
@@ -359,7 +359,7 @@ constexpr std::array<Halves, 7> kPictures{
 
 class Readable : public tests::HudPicture {
  protected:
-  static Image Painted(const Hud& hud, int width, int height, const Halves& halves) {
+  static HdrImage Painted(const Hud& hud, int width, int height, const Halves& halves) {
     const RenderTarget target(width, height, RenderTarget::Depth::kNone);
     target.Bind();
     glEnable(GL_SCISSOR_TEST);
@@ -376,9 +376,9 @@ class Readable : public tests::HudPicture {
 
   Worst WorstPixel(Of which, Hud& hud, int width, int height, const Halves& halves) const {
     for (int frame = 0; frame < 3; ++frame) tests::FrameOf(hud, model_, Still(width, height));
-    const Image with = Painted(hud, width, height, halves);
+    const HdrImage with = Painted(hud, width, height, halves);
     const std::vector<Letter> letters = TakeLetters(which);
-    const Image behind = Painted(hud, width, height, halves);
+    const HdrImage behind = Painted(hud, width, height, halves);
     Worst worst{21.0, 0, 0};
     for (const Letter& letter : letters) {
       const int right = std::min(static_cast<int>(letter.to.x) + 1, width);

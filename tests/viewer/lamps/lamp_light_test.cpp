@@ -533,7 +533,7 @@ struct LampNight {
   SceneGround ground = LoadGround(scene);
   SceneLamps lamps{scene, ground, scene.medium};
 
-  [[nodiscard]] Image Paint(const LampQuality& quality) {
+  [[nodiscard]] HdrImage Paint(const LampQuality& quality) {
     const GlBuffer view_buffer;
     ViewBlock view{};
     view.view_right = {kHalfWidth, 0.0, 0.0, 0.0};
@@ -573,7 +573,7 @@ glm::dvec3 DirectionOf(int x, int y) {
 constexpr int kEvery = tests::ScaledDown(3, 5);
 
 /// By every third pixel each way; by every fifth under the sanitizers.
-std::vector<double> Deviations(const Image& image,
+std::vector<double> Deviations(const HdrImage& image,
                                const std::function<double(int x, int y)>& truth) {
   std::vector<double> deviations;
   for (int y = 1; y < kGlowHeight; y += kEvery) {
@@ -613,7 +613,7 @@ TEST_F(LampPicture, LampsAndTheirGlowAreThoseOfTheRendererPixelByPixel) {
 
 TEST_F(LampPicture, ALatticeOfEverySecondPixelWithCoresIsTheWholePicture) {
   LampNight night;
-  const Image whole = night.Paint({.nodes = 12, .step = 1});
+  const HdrImage whole = night.Paint({.nodes = 12, .step = 1});
   const std::vector<double> deviations =
       Deviations(night.Paint({.nodes = 12, .step = 2}),
                  [&](int x, int y) { return double{whole.at(x, y)[1]}; });

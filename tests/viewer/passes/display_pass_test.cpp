@@ -187,9 +187,9 @@ TEST_F(SmallPictures, EdgesOfShadeAreAsWideAsTheirPixels) {
                      tests::SharedAirOf(scene));
   painter.WaitUntilReady(view);
   painter.Paint(view, 1, SkyPainter::Bodies::kNone);
-  const Image one = painter.picture().Read();
+  const HdrImage one = painter.picture().Read();
   painter.Paint(view, tests::ScaledDown(36, 16), SkyPainter::Bodies::kNone);
-  const Image many = painter.picture().Read();
+  const HdrImage many = painter.picture().Read();
   double sum2 = 0.0;
   for (std::size_t i = 0; i < one.rgb.size(); ++i) {
     const double error = static_cast<double>(one.rgb[i][1] / many.rgb[i][1]) - 1.0;
@@ -254,7 +254,7 @@ class UpscalerTest : public tests::Headless {
       }
     }
   }
-  [[nodiscard]] static Image Upscaled(const RenderTarget& small, const DepthPrepass& outline) {
+  [[nodiscard]] static HdrImage Upscaled(const RenderTarget& small, const DepthPrepass& outline) {
     const RenderTarget light(kPrintWidth, kPrintHeight);
     Upscaler(Upscaler::Shows::kLight).Upscale(small, outline, kHalfView, light.framebuffer());
     return light.Read();
@@ -266,7 +266,7 @@ TEST_F(UpscalerTest, EdgesOfLandAreAsSharpAsTheScreen) {
   Fill(small, [](int x, int y) { return PixelOf(At(kSmaller * (x + 0.5), kSmaller * (y + 0.5))); });
   const DepthPrepass outline(kPrintWidth, kPrintHeight);
   FillDepth(outline, [](int x, int y) { return PixelOf(At(x + 0.5, y + 0.5))[3]; });
-  const Image shown = Upscaled(small, outline);
+  const HdrImage shown = Upscaled(small, outline);
   int wrong = 0;
   for (int y = 0; y < kPrintHeight; ++y) {
     for (int x = 0; x < kPrintWidth; ++x) {
@@ -294,7 +294,7 @@ TEST_F(UpscalerTest, OnOneSurfaceLightIsInterpolated) {
       return std::array{light, 0.0F, 0.0F, is_land ? inverse_depth(kSmaller * (y + 0.5)) : 0.0F};
     });
     FillDepth(outline, [&](int, int y) { return is_land ? inverse_depth(y + 0.5) : 0.0F; });
-    const Image shown = Upscaled(small, outline);
+    const HdrImage shown = Upscaled(small, outline);
     for (int y = kSmaller; y < kPrintHeight - kSmaller; ++y) {
       for (int x = kSmaller; x < kPrintWidth - kSmaller; ++x) {
         ASSERT_NEAR(shown.at(x, kPrintHeight - 1 - y)[0], x + 0.5 + 3.0 * (y + 0.5), 1e-3)

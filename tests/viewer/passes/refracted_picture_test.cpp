@@ -36,7 +36,7 @@ PaintedView ViewFrom(const Scene& scene, const UtcTime& now, int width, int heig
   return {eye, now, width, height};
 }
 
-Image Painted(const Scene& scene, const PaintedView& view) {
+HdrImage Painted(const Scene& scene, const PaintedView& view) {
   SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow),
                      tests::SharedAirOf(scene));
   painter.WaitUntilReady(view);
@@ -166,15 +166,15 @@ TEST_F(RefractedOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
   scene.ground.kind = GroundCover::Kind::kWater;
   constexpr int kAcross = 64, kDown = 48;
   const UtcTime now = ParseInstant("2026-06-21T19:23:40Z");
-  const Image painted = Painted(scene, ViewFrom(scene, now, kAcross, kDown));
+  const HdrImage painted = Painted(scene, ViewFrom(scene, now, kAcross, kDown));
   RenderSettings settings{.width = kAcross,
                           .height = kDown,
                           .samples_per_pixel = 16,
                           .filter = PixelFilter::Kind::kBox,
                           .air_nodes = 8,
                           .layers = {}};
-  const Image reference = SceneRenderer(scene).Render(now, settings);
-  const auto luminance = [](const Image& picture, int x, int y) {
+  const HdrImage reference = SceneRenderer(scene).Render(now, settings);
+  const auto luminance = [](const HdrImage& picture, int x, int y) {
     const auto& rgb = picture.at(x, y);
     return shared::Luminance(rgb[0], rgb[1], rgb[2]);
   };
@@ -182,7 +182,7 @@ TEST_F(RefractedOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
   for (int y = 0; y < kDown; ++y)
     for (int x = 0; x < kAcross; ++x) brightest = std::max(brightest, luminance(reference, x, y));
   // Half of what the lower limb, dimmed by the air, has of the brightest.
-  const auto is_sun = [&](const Image& picture, int x, int y) {
+  const auto is_sun = [&](const HdrImage& picture, int x, int y) {
     return luminance(picture, x, y) > 0.2F * brightest;
   };
   int in_both = 0, in_one = 0;

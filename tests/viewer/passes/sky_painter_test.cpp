@@ -294,7 +294,7 @@ class LightOfDisks {
            SumOf(view, samples, SkyPainter::Bodies::kStars);
   }
   /// Returns the sum of the light of a picture, in green [lux].
-  [[nodiscard]] static double SumOf(const Image& image, double fov_rad) {
+  [[nodiscard]] static double SumOf(const HdrImage& image, double fov_rad) {
     const double half = std::tan(0.5 * fov_rad);
     const auto solid_angle = [&](int x, int y) {
       if (fov_rad > kPi) {
@@ -348,7 +348,7 @@ TEST_F(DisksInTheSky, HaveTheirLightInPicturesOfAnySize) {
   PaintedView alone = light.Beside(to_sun, 1.0, 0.0, {64, 64});
   CameraSample camera_sample(alone.now);
   camera_sample.poses = {alone.eye};
-  const Image rendered =
+  const HdrImage rendered =
       SceneRenderer(shared().scene).Render(camera_sample, ReferenceSettings({64, 64}, 4));
   EXPECT_NEAR(whole / LightOfDisks::SumOf(rendered, alone.eye.fov_rad), 1.0, 0.02)
       << "with the sky around the disk, which has a thousandth of the light";
@@ -462,11 +462,11 @@ std::vector<double> ChangesIn(const Scene& scene, const FlightOver& flight) {
   SkyPainter painter(scene, LandSourceOf(scene), view_at(0), SizesOf(Quality::kMedium),
                      tests::SharedAirOf(scene));
   std::vector<double> changes;
-  std::optional<Image> last;
+  std::optional<HdrImage> last;
   for (int step = 0; step <= kSteps; ++step) {
     painter.WaitUntilReady(view_at(step));
     painter.Paint(view_at(step), 4, SkyPainter::Bodies::kNone);
-    Image shown = painter.picture().Read();
+    HdrImage shown = painter.picture().Read();
     double sum = 0.0;
     for (std::size_t i = 0; last && i < shown.rgb.size(); ++i)
       sum += std::abs(std::log(static_cast<double>(shown.rgb[i][1] / last->rgb[i][1])));
@@ -528,8 +528,9 @@ TEST_F(SkyPainterTest, FogUnderAnyEyeIsTheRenderers) {
     painter.Paint(view, 4, SkyPainter::Bodies::kNone);
     CameraSample camera_sample(view.now);
     camera_sample.poses = {view.eye};
-    const Image rendered = SceneRenderer(scene).Render(camera_sample, ReferenceSettings({8, 6}, 4));
-    const Image painted = painter.picture().Read();
+    const HdrImage rendered =
+        SceneRenderer(scene).Render(camera_sample, ReferenceSettings({8, 6}, 4));
+    const HdrImage painted = painter.picture().Read();
     for (const std::size_t band : {0, 1, 2}) {
       double of_painted = 0.0, of_rendered = 0.0;
       for (std::size_t i = 0; i < painted.rgb.size(); ++i) {
@@ -623,7 +624,7 @@ struct MeanLuminance {
   double land, sky, all;
 };
 
-MeanLuminance MeanLuminanceOf(const Image& picture) {
+MeanLuminance MeanLuminanceOf(const HdrImage& picture) {
   std::array<double, 2> sum{}, count{};
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
@@ -845,7 +846,7 @@ TEST_F(BarePlanet, IsSeenThroughFogAsTheRenderersIs) {
 class BareSkyPainter {
  public:
   /// Returns a settled picture.
-  Image Painted(const PaintedView& view, int samples = 1) {
+  HdrImage Painted(const PaintedView& view, int samples = 1) {
     painter.WaitUntilReady(view);
     painter.Paint(view, samples);
     return painter.picture().Read();
@@ -875,7 +876,7 @@ TEST_F(BareSky, NoPixelIsBlackOrNegativeInDaylight) {
 
 TEST_F(BareSky, SeveralRaysAPixelAverageToThePicture) {
   const PaintedView view = BareSkyPainter::View(280.0, 40.0, 60.0);
-  const Image one = shared().Painted(view), four = shared().Painted(view, 4);
+  const HdrImage one = shared().Painted(view), four = shared().Painted(view, 4);
   int far_off = 0;
   for (std::size_t i = 0; i < one.rgb.size(); ++i) {
     if (std::abs(four.rgb[i][1] / one.rgb[i][1] - 1.0F) > 2e-3F) ++far_off;
@@ -886,7 +887,7 @@ TEST_F(BareSky, SeveralRaysAPixelAverageToThePicture) {
 TEST_F(BareSky, AnotherPictureIsShownInstead) {
   const PaintedView view = BareSkyPainter::View(100.0, 30.0, 60.0);
   static_cast<void>(shared().Painted(view));
-  Image other(5, 3);
+  HdrImage other(5, 3);
   for (std::size_t i = 0; i < other.rgb.size(); ++i)
     other.rgb[i] = {1.0F + static_cast<float>(i), 2.0F, -3.0F};
   shared().painter.Show(other);
@@ -904,9 +905,9 @@ ReferencePicture::View ViewOf(const std::shared_ptr<const ReferenceScene>& of) {
 }
 
 // Takes pictures until there is one of so many rays a pixel.
-Image PictureOf(ReferencePicture& reference, int samples) {
+HdrImage PictureOf(ReferencePicture& reference, int samples) {
   for (;;) {
-    std::optional<Image> image = reference.Poll();
+    std::optional<HdrImage> image = reference.Poll();
     if (image && reference.samples() >= samples) return std::move(*image);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
@@ -919,7 +920,7 @@ TEST(ReferencePicture, EndsAsTheRenderersPictureOf64Rays) {
   const ReferencePicture::View view = ViewOf(of);
   reference.Show(view);
   EXPECT_EQ(reference.samples(), 0);
-  const Image made = PictureOf(reference, 64);
+  const HdrImage made = PictureOf(reference, 64);
   RenderSettings settings;
   settings.width = 16;
   settings.height = 8;

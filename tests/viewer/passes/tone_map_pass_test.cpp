@@ -27,8 +27,8 @@ namespace {
 constexpr int kFrameWidth = 96, kFrameHeight = 54;
 
 /// All hues over twelve stops around 2000 cd/m^2, and some colours out of the display's gamut.
-Image Colours() {
-  Image image(kFrameWidth, kFrameHeight);
+HdrImage Colours() {
+  HdrImage image(kFrameWidth, kFrameHeight);
   for (int y = 0; y < kFrameHeight; ++y) {
     for (int x = 0; x < kFrameWidth; ++x) {
       const auto stop = static_cast<float>(12.0 * y / kFrameHeight - 8.0);
@@ -45,7 +45,7 @@ Image Colours() {
 using ToneMapPassTest = tests::Headless;
 
 TEST_F(ToneMapPassTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
-  const Image image = Colours();
+  const HdrImage image = Colours();
   const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
@@ -56,7 +56,7 @@ TEST_F(ToneMapPassTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
     tone_map.Use(Look{.curve = curve});
     tone_map.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
     const DisplayImage reference = Develop(image, ev100, {.curve = curve});
-    const Image codes = screen.Read();
+    const HdrImage codes = screen.Read();
     int off_by_one = 0;
     for (std::size_t i = 0; i < codes.rgb.size(); ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
@@ -72,7 +72,7 @@ TEST_F(ToneMapPassTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
 }
 
 TEST_F(ToneMapPassTest, ADraftIsAFewCodesOffAndThenExact) {
-  const Image image = Colours();
+  const HdrImage image = Colours();
   const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
@@ -81,7 +81,7 @@ TEST_F(ToneMapPassTest, ADraftIsAFewCodesOffAndThenExact) {
   const ToneMapPass tone_map(Look{}, ToneMapPass::FirstPictures::kDraft);
   const auto most_off = [&] {
     tone_map.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
-    const Image codes = screen.Read();
+    const HdrImage codes = screen.Read();
     int most = 0;
     for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
       const int code = static_cast<int>(std::lround(codes.rgb[i / 3][i % 3] * 255.0F));
@@ -98,7 +98,7 @@ TEST_F(ToneMapPassTest, ADraftIsAFewCodesOffAndThenExact) {
 }
 
 TEST_F(ToneMapPassTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
-  const Image image = Colours();
+  const HdrImage image = Colours();
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
@@ -116,13 +116,13 @@ TEST_F(ToneMapPassTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) 
 }
 
 TEST_F(ToneMapPassTest, APictureOfAnotherSizeFillsTheScreen) {
-  Image image(8, 8);
+  HdrImage image(8, 8);
   for (auto& pixel : image.rgb) pixel = {500.0F, 800.0F, 1000.0F};
   const RenderTarget picture(8, 8, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   ToneMapPass(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
-  Image even(kFrameWidth, kFrameHeight);
+  HdrImage even(kFrameWidth, kFrameHeight);
   for (auto& pixel : even.rgb) pixel = image.rgb[0];
   const DisplayImage reference = Develop(even, 12.0, {.curve = ToneCurve::kAgx}),
                      shown = screen.ReadBytes();
@@ -133,7 +133,7 @@ TEST_F(ToneMapPassTest, APictureOfAnotherSizeFillsTheScreen) {
 using ExposureMeterTest = tests::Headless;
 
 TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
-  const Image image = Colours();
+  const HdrImage image = Colours();
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   ExposureMeter meter;
@@ -141,7 +141,7 @@ TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
       << "the copy shows the same picture, upscaled";
   const RenderTarget large(4 * ExposureMeter::kLongSide, 2 * ExposureMeter::kLongSide,
                            RenderTarget::Depth::kNone);
-  Image many(large.width(), large.height());
+  HdrImage many(large.width(), large.height());
   for (int y = 0; y < many.height; ++y) {
     for (int x = 0; x < many.width; ++x)
       many.at(x, y) = image.at(x * kFrameWidth / many.width, y * kFrameHeight / many.height);
@@ -152,7 +152,7 @@ TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
 }
 
 TEST_F(ExposureMeterTest, SettlesTheWhiteBalanceAsTheSeriesDoes) {
-  Image image(kFrameWidth, kFrameHeight);
+  HdrImage image(kFrameWidth, kFrameHeight);
   const auto white = LinearSrgbFromXyz() * WhiteOfTemperature(4200.0);
   for (auto& pixel : image.rgb) {
     for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(700.0 * white[c]);
@@ -251,7 +251,7 @@ using SpotMeterTest = tests::Headless;
 
 /// Grey, of so many candela per square metre in the upper left and one more from pixel to pixel.
 RenderTarget Greys(int width, int height, float first_cd_per_m2) {
-  Image image(width, height);
+  HdrImage image(width, height);
   for (std::size_t i = 0; i < image.rgb.size(); ++i)
     image.rgb[i].fill(first_cd_per_m2 + static_cast<float>(i));
   RenderTarget target(width, height, RenderTarget::Depth::kNone);

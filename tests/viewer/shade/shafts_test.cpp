@@ -236,7 +236,7 @@ class ShaftPicture {
   }
 
   /// Returns the picture of the light that shade removes.
-  [[nodiscard]] Image Painted(const ShadeTexture& shade, const ShaftDetail& detail) const {
+  [[nodiscard]] HdrImage Painted(const ShadeTexture& shade, const ShaftDetail& detail) const {
     constexpr GLuint kViewBinding = 1;
     const std::vector<ShaderPiece> air = {ViewerPiece("viewer/shaders/view/block.glsl"),
                                           {"air", kSingleTo}};
@@ -284,7 +284,8 @@ TEST_F(Shafts, OfEveryFourthPixelAreTakenBetweenRaysThatComeAsFar) {
   shade.Upload(100000, 1);
   ASSERT_TRUE(shade.Shades());
   const ShaftPicture scene;
-  const Image fine = scene.Painted(shade, {1, {8, 8}}), coarse = scene.Painted(shade, {4, {8, 8}});
+  const HdrImage fine = scene.Painted(shade, {1, {8, 8}}),
+                 coarse = scene.Painted(shade, {4, {8, 8}});
   std::vector<double> apart;
   double largest = 0.0, jump = 0.0;
   for (std::size_t i = 0; i < fine.rgb.size(); ++i) {
