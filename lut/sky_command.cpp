@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "lut/sky_command.h"
 
+#include <alpenglow/image.h>
+#include <alpenglow/panorama.h>
+#include <alpenglow/sky.h>
+#include <alpenglow/sun_and_moon.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
-#include "atmosphere/refraction/refracted_view.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/time_place/time.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
 #include "lut/cli/terminal.h"
-#include "lut/image/development.h"
-#include "lut/image/exr.h"
 #include "lut/image/look_options.h"
-#include "lut/image/metering.h"
-#include "lut/image/png.h"
 #include "lut/sky/panorama.h"
 
 namespace alpenglow::lut {
@@ -27,81 +27,56 @@ namespace {
 
 struct SkyOptions {
   std::optional<std::string> atmosphere, png, time, zone;
-  std::string out, size = "2048x1024", orientation = "north", exposure = "auto";
-  LookTexts look;
+  std::string out, size = "2048x1024", orientation = "north";
+  DisplayOptions display;
   std::optional<double> sun_elevation, latitude, longitude;
   std::vector<std::string> layers;
   double sun_azimuth = 180.0, altitude = 2.0;
-  bool sun_disk = false, night_vision = false, compass = false;
+  bool sun_disk = false, compass = false;
 };
 
-/// Input of one panorama: the medium, the settings and the metadata of its output files.
+/// Input of one panorama: the air, the options and the metadata of its place and time.
 struct SkyJob {
-  Medium medium;
-  PanoramaSettings settings;
+  Atmosphere air;
+  PanoramaOptions panorama;
   Metadata metadata;
 };
 
 SunInSky SunFromAngles(const SkyOptions& options) {
-  SunInSky sun;
-  sun.elevation_deg = *options.sun_elevation;
-  sun.azimuth_deg = options.sun_azimuth;
-  sun.angular_radius_deg = kSunAngularRadius_rad / kRadiansPerDegree;
-  return sun;
+  return {.elevation_deg = *options.sun_elevation,
+          .azimuth_deg = options.sun_azimuth,
+          .angular_radius_deg = kSunAngularRadius_rad / kRadiansPerDegree};
+}
+
+/// Sets place, sun and air of a panorama at an instant. The sun is at its apparent (refracted)
+/// position, and lights the air from a lower one, as in the images of skyseries.
+void PlaceAt(const SkyOptions& options, SkyJob& job) {
+  const Place eye = CheckedPlace({*options.latitude, *options.longitude, options.altitude});
+  const UtcTime time = TimeFromText(*options.time, options.zone.value_or(""));
+  job.air = job.air.AtLatitude(eye.latitude_deg);
+  job.panorama.sun = SunAt(eye, time, job.air);
+  job.metadata["alpenglow.latitude_deg"] = fmt::format("{:.6f}", eye.latitude_deg);
+  job.metadata["alpenglow.longitude_deg"] = fmt::format("{:.6f}", eye.longitude_deg);
+  job.metadata["alpenglow.utc"] = FormatUtc(time, 3);
 }
 
 SkyJob JobFrom(const SkyOptions& options) {
   SkyJob job;
-  job.medium = options.atmosphere ? MediumFromChoice(*options.atmosphere, kForPictures)
-                                  : MediumPreset("earth");
+  if (options.atmosphere) job.air = Atmosphere(MediumFromChoice(*options.atmosphere, kForPictures));
   const ImageSize size = ImageSizeFromText(options.size);
-  job.settings.width = size.width;
-  job.settings.height = size.height;
-  job.settings.altitude_m = options.altitude;
-  job.settings.orientation = PanoramaOrientationFromName(options.orientation);
-  job.settings.sun_disk = options.sun_disk;
-  job.settings.compass = options.compass;
-  for (const std::string& name : options.layers) {
-    const StokesLayer layer = StokesLayerFromName(name);
-    auto& layers = job.settings.layers;
-    if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
-  }
-  if (options.sun_elevation) {
-    job.settings.sun = SunFromAngles(options);
-  } else {
-    const Place eye = CheckedPlace({*options.latitude, *options.longitude, options.altitude});
-    const UtcTime instant = ParseInstant(*options.time, options.zone);
-    job.medium = OnOsculatingSphere(job.medium, eye.latitude_rad());
-    // The sun is at its apparent (refracted) position. The air is lit by a lower sun
-    // (lower_for_air_deg), as in the images of skyseries.
-    job.settings.sun = ApparentSunAt(eye, instant, GentleAirOf(job.medium));
-    job.metadata["alpenglow.latitude_deg"] = fmt::format("{:.6f}", eye.latitude_deg);
-    job.metadata["alpenglow.longitude_deg"] = fmt::format("{:.6f}", eye.longitude_deg);
-    job.metadata["alpenglow.utc"] = FormatUtc(instant, 3);
-  }
+  job.panorama = {.width = size.width,
+                  .height = size.height,
+                  .altitude_m = options.altitude,
+                  .sun = {},
+                  .centre = PanoramaCentreFromName(options.orientation),
+                  .draws_sun = options.sun_disk,
+                  .draws_compass = options.compass,
+                  .layers = options.layers};
+  if (options.sun_elevation)
+    job.panorama.sun = SunFromAngles(options);
+  else
+    PlaceAt(options, job);
   return job;
-}
-
-void Describe(SkyJob& job) {
-  const PanoramaSettings& settings = job.settings;
-  const SunInSky& sun = settings.sun;
-  Metadata& metadata = job.metadata;
-  metadata["Software"] = ProducerText();
-  metadata["alpenglow.unit"] = "cd/m^2, linear sRGB (Rec. 709 primaries, D65)";
-  metadata["alpenglow.atmosphere"] = job.medium.name;
-  metadata["alpenglow.atmosphere_hash"] = fmt::format("{:016x}", MediumHash(job.medium));
-  metadata["alpenglow.altitude_m"] = fmt::format("{}", settings.altitude_m);
-  metadata["alpenglow.sun_elevation_deg"] = fmt::format("{:.6f}", sun.elevation_deg);
-  metadata["alpenglow.sun_azimuth_deg"] = DirectionText(sun.azimuth_deg, 6);
-  metadata["alpenglow.sun_distance"] = fmt::format("{:.6f}", sun.distance_au);
-  metadata["alpenglow.sun_disk"] = settings.sun_disk ? "drawn" : "left out";
-  if (settings.compass) metadata["alpenglow.compass"] = "painted";
-  std::vector<std::string> layers;
-  for (const StokesLayer layer : settings.layers) layers.push_back(NameOf(layer));
-  if (!layers.empty()) metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(layers, ","));
-  metadata["alpenglow.orientation"] = NameOf(settings.orientation);
-  metadata["alpenglow.centre_azimuth_deg"] =
-      DirectionText(CentreAzimuth(settings.orientation) / kRadiansPerDegree, 6);
 }
 
 /// The image, and the illuminance on a horizontal plane at the observer.
@@ -111,19 +86,13 @@ struct RenderedSky {
 };
 
 RenderedSky Rendered(const SkyJob& job, ProgressStyle style) {
-  const SingleScattering<float> air(job.medium);
-  const MultipleScattering multiple_scattering(job.medium, OptionsFor(job.medium));
-  Progress progress("rows", static_cast<std::size_t>(job.settings.height), style);
-  return {
-      RenderPanorama(air, multiple_scattering, job.settings, [&] { progress.Advance(); }),
-      HorizontalIlluminance(air, multiple_scattering, job.settings.altitude_m, job.settings.sun)};
-}
-
-double Ev100Of(const RenderedSky& sky, const HdrImage& seen, const ExposureRule& rule,
-               const Look& look) {
-  if (rule.kind == ExposureRule::Kind::kIncident) return IncidentEv100(sky.illuminance_lux);
-  return Ev100By(
-      rule, MeterEv100(seen, kSunDiskLuminance_cd_per_m2, Projection::kLatitudeLongitude), look);
+  const Sky sky(job.air);
+  RenderedSky rendered{
+      RenderPanorama(sky, job.panorama,
+                     ShownProgress("rows", static_cast<std::size_t>(job.panorama.height), style)),
+      HorizontalIlluminance(sky, job.panorama.altitude_m, job.panorama.sun)};
+  rendered.image.metadata.insert(job.metadata.begin(), job.metadata.end());
+  return rendered;
 }
 
 void PrepareOutputsOf(const SkyOptions& options) {
@@ -135,24 +104,16 @@ void PrepareOutputsOf(const SkyOptions& options) {
 
 void MakeSky(const SkyOptions& options, const CommonOptions& common) {
   PrepareOutputsOf(options);
-  const ExposureRule rule = ExposureRuleFromText(options.exposure);
-  Look look = LookFromTexts(options.look);
-  look.night_vision = options.night_vision;
-  look = LookUnder(rule, look);
-  SkyJob job = JobFrom(options);
-  const RenderedSky sky = Rendered(job, common.progress_style());
-  const PictureView view{Projection::kLatitudeLongitude, 2.0 * kPi / sky.image.width};
-  look = Settled(look, sky.image, view);
-  const HdrImage seen = Seen(sky.image, look, view);
-  const double ev100 = Ev100Of(sky, seen, rule, look);
-  Describe(job);
-  job.metadata["alpenglow.illuminance_lux"] = fmt::format("{:.6g}", sky.illuminance_lux);
-  job.metadata.merge(HeaderOfExposure(rule, ev100, RuleInWords(rule)));
-  WriteExr(options.out, sky.image, job.metadata, Projection::kLatitudeLongitude);
-  if (options.png) {
-    job.metadata.merge(HeaderOfLook(look));
-    WritePng(*options.png, Develop(seen, ev100, look), job.metadata);
-  }
+  static_cast<void>(LookOf(options.display));  // refuses wrong names before the work
+  RenderedSky sky = Rendered(JobFrom(options), common.progress_style());
+  DisplayOptions display = options.display;
+  display.illuminance_lx = sky.illuminance_lux;
+  const ExposureRule rule = RuleOf(display);
+  Metadata& metadata = sky.image.metadata;
+  metadata["alpenglow.illuminance_lux"] = fmt::format("{:.6g}", sky.illuminance_lux);
+  metadata.merge(HeaderOfExposure(rule, ExposureValue(sky.image, display), RuleInWords(rule)));
+  WriteExr(options.out, sky.image);
+  if (options.png) WritePng(*options.png, sky.image, display);
 }
 
 void AddPlace(CLI::App& sky, SkyOptions& options) {
@@ -182,7 +143,7 @@ void AddPlace(CLI::App& sky, SkyOptions& options) {
                  "Direction of the centre of the picture: north or geographic (north); blender, "
                  "three or unity (east, which is +x there); openexr or godot (south, which is +z "
                  "there). East is +x in all of them, and no picture is mirrored")
-      ->check(ReadableBy([](const std::string& text) { (void)PanoramaOrientationFromName(text); }))
+      ->check(ReadableBy([](const std::string& text) { (void)PanoramaCentreFromName(text); }))
       ->capture_default_str();
   BeginGroup(sky, kTimeGroup);
   CLI::Option* time = sky.add_option("--time,--at", options.time,
@@ -202,14 +163,14 @@ void AddPicture(CLI::App& sky, SkyOptions& options) {
                "Draw the disk of the sun: pixels of about 1e9 cd/m^2 that contain all its light");
   sky.add_flag("--compass", options.compass,
                "Paint N, E, S and W on the horizon, to check the orientation in another program");
-  sky.add_option("--exposure", options.exposure,
+  sky.add_option("--exposure", options.display.exposure,
                  "Exposure: auto (the picture is metered), eye (dusk and night stay darker than "
                  "day), incident (the light on a horizontal plane is metered) or an EV at ISO 100, "
                  "-30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
-  AddLookOptions(sky, options.look, LookNames(), kToneMapHelp);
-  sky.add_flag("--night-vision", options.night_vision, kNightVisionHelp);
+  AddLookOptions(sky, options.display, LookNames(), kToneMapHelp);
+  sky.add_flag("--night-vision", options.display.night_vision, kNightVisionHelp);
 }
 
 void AddOutput(CLI::App& sky, SkyOptions& options) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/table_commands.h"
 
+#include <alpenglow/tables.h>
 #include <fmt/format.h>
 
 #include <memory>
@@ -35,11 +36,10 @@ struct BuildOptions {
 
 /// Returns the options of the table layout of another program (Bruneton or takram), if one is
 /// requested.
-std::optional<ExchangeOptions> ExchangeOf(const BuildOptions& options) {
+std::optional<ExportOptions> ExchangeOf(const BuildOptions& options) {
   if (options.layout == "native") return std::nullopt;
-  ExchangeOptions exchange;
-  exchange.layout =
-      options.layout == "takram" ? ExchangeLayout::kTakram : ExchangeLayout::kBruneton;
+  ExportOptions exchange;
+  exchange.user = TableUserFromName(options.layout);
   if (options.type) exchange.type = TexelTypeFromName(*options.type);
   if (options.format) exchange.format = TexelFormatFromName(*options.format);
   exchange.lowest_sun_deg = options.lowest_sun_deg;
@@ -74,6 +74,12 @@ void RequireAtmosphereElsewhere(const BuildOptions& options, const char* name) {
                  {{"--atmosphere", *options.atmosphere}});
 }
 
+/// Returns the air of the options, by default a preset.
+Atmosphere AirOf(const BuildOptions& options, const char* preset) {
+  return options.atmosphere ? Atmosphere(MediumFromChoice(*options.atmosphere, kForLight))
+                            : Atmosphere::Preset(preset);
+}
+
 /// Writes a warning about media whose aerosol has a tabulated phase function. The exported tables
 /// hold no phase functions, and the programs that load them use a single lobe.
 void WarnOfLobe(const Medium& medium) {
@@ -86,20 +92,30 @@ void WarnOfLobe(const Medium& medium) {
       medium.wavelengths_nm[middle]));
 }
 
-void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exchange,
+void BuildExchangeTables(const BuildOptions& options, const ExportOptions& exchange,
                          const CommonOptions& common) {
   RequireAtmosphereElsewhere(options, kMediumFileName);
-  const Medium medium = options.atmosphere ? MediumFromChoice(*options.atmosphere, kForLight)
-                                           : MediumPreset("bruneton2017");
-  MakeFolder(options.out);  // before the tables are computed
-  WriteExchangeTables(MakeExchangeTextures(medium, exchange, common.progress_style()), medium,
-                      exchange, options.out);
-  if (!IsTheMediumThatLoadersAssume(medium)) {
+  const Atmosphere air = AirOf(options, "bruneton2017");
+  ExportTables(air, options.out, exchange,
+               ShownProgress("scattering", kExchangeRows, common.progress_style()));
+  if (!IsTheMediumThatLoadersAssume(air.medium())) {
     Warn(fmt::format(
         "programs with fixed constants assume the preset bruneton2017; these tables are for {}",
-        medium.name));
-    WarnOfLobe(medium);
+        air.name()));
+    WarnOfLobe(air.medium());
   }
+}
+
+/// Writes the smallest tables within an error. This search has no function in the public headers: its
+/// result is a text about measured errors of methods.
+void BuildWithin(double max_error, const BuildOptions& options, const Atmosphere& air) {
+  MakeFolder(options.out);  // before the tables are computed
+  const TableChoice choice = ChooseTables(
+      air.medium(),
+      {.max_error = max_error,
+       .wanted = options.tables == "all" ? TablesWanted::kAll : TablesWanted::kSmallest});
+  WriteTables(choice, options.out);
+  Print(ChoiceText(choice, max_error));
 }
 
 void Build(const BuildOptions& options, const CommonOptions& common) {
@@ -107,20 +123,16 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
     BuildExchangeTables(options, *exchange, common);
     return;
   }
-  const Medium medium =
-      options.atmosphere ? MediumFromChoice(*options.atmosphere, kForLight) : MediumPreset("earth");
+  const Atmosphere air = AirOf(options, "earth");
   if (const auto max_error = RelativeErrorFromText(options.max_error.value_or(""))) {
-    MakeFolder(options.out);  // before the tables are computed
-    const TableChoice choice = ChooseTables(
-        medium, {.max_error = *max_error,
-                 .wanted = options.tables == "all" ? TablesWanted::kAll : TablesWanted::kSmallest});
-    WriteTables(choice, options.out);
-    Print(ChoiceText(choice, *max_error));
+    BuildWithin(*max_error, options, air);
     return;
   }
-  BuildTableFolder(medium, TableQualityFromName(options.quality),
-                   options.single_scattering_only ? TableOrders::kSingleOnly : TableOrders::kAll,
-                   options.out, common.progress_style());
+  const BakeOptions bake{.quality = BakeQualityFromName(options.quality),
+                         .single_scattering_only = options.single_scattering_only};
+  const std::size_t rows = ScatteringTable::Rows(SizesOf(bake.quality).single_scattering);
+  BakeTables(air, options.out, bake,
+             ShownProgress("single scattering", rows, common.progress_style()));
 }
 
 /// Adds the options that choose the tables and their sizes.

@@ -65,12 +65,12 @@ struct SkyseriesOptions {
 /// Texts of the options of light and picture, as typed. ReadPictureOptions reads them once the
 /// whole command line is known, because they depend on each other.
 struct PictureOptionTexts {
-  std::string size = "1280x720", exposure = "auto", filter = "blackman-harris", glare = "none";
-  LookTexts look;
+  std::string size = "1280x720", filter = "blackman-harris", glare = "none";
+  DisplayOptions display;
   std::optional<int> samples;
   std::optional<std::string> effects, max_error, noise;
   std::vector<std::string> layers;
-  bool night_vision = false, no_shafts = false, explain = false;
+  bool no_shafts = false, explain = false;
 };
 
 /// Adds an option that replaces a part of the scene file, and cannot be given together with one.
@@ -192,15 +192,15 @@ inline void AddAirOptions(CLI::App& app, SkyseriesOptions& options) {
 }
 
 inline void AddDisplayOptions(CLI::App& app, PictureOptionTexts& texts) {
-  app.add_option("--exposure", texts.exposure,
+  app.add_option("--exposure", texts.display.exposure,
                  "Exposure: auto (each picture is metered; in a series the exposure changes "
                  "smoothly), eye (metered, but dusk and night stay darker than day, as for an eye "
                  "that adapts only in part), incident (the light on the ground is metered in each "
                  "frame; smooth from day to night) or an EV at ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
-  AddLookOptions(app, texts.look, LookNames(), kToneMapHelp);
-  app.add_flag("--night-vision", texts.night_vision, kNightVisionHelp);
+  AddLookOptions(app, texts.display, LookNames(), kToneMapHelp);
+  app.add_flag("--night-vision", texts.display.night_vision, kNightVisionHelp);
   app.add_option("--glare", texts.glare,
                  "\"eye\" adds to the PNG the light that the eye scatters around sun and lamps. It "
                  "does not change the EXR and needs a perspective camera")
@@ -263,7 +263,7 @@ inline void AddEffectOptions(CLI::App& app, PictureOptionTexts& texts) {
                                          : EffectsFromText(effects);
   settings.filter = PixelFilterFromName(texts.filter);
   settings.layers = LayersFromNames(texts.layers);
-  if (texts.night_vision) settings.layers.push_back(PictureLayer::kScotopic);
+  if (texts.display.night_vision) settings.layers.push_back(PictureLayer::kScotopic);
   return settings;
 }
 
@@ -279,10 +279,8 @@ inline void AddEffectOptions(CLI::App& app, PictureOptionTexts& texts) {
 
 /// Sets exposure and look of the developed pictures.
 inline void SetDevelopment(const PictureOptionTexts& texts, SeriesOutput& output) {
-  output.exposure = ExposureRuleFromText(texts.exposure);
-  output.look = LookFromTexts(texts.look);
-  output.look.night_vision = texts.night_vision;
-  output.look = LookUnder(output.exposure, output.look);
+  output.exposure = RuleOf(texts.display);
+  output.look = LookOf(texts.display);
   output.glare = texts.glare == "eye";
 }
 

@@ -325,7 +325,7 @@ int Run(const SkyviewOptions& options) {
   FlightSession flight(
       scene, start,
       {LandSourceOf(scene), QualityRuleFromText(options.quality), options.frame_rate, size,
-       std::nullopt, FlightExposureFromText(options.exposure), LookFromTexts(options.look),
+       std::nullopt, FlightExposureFromText(options.display.exposure), LookOf(options.display),
        first_air.valid() ? first_air.get() : FirstAir()});
   flight.standpoint().MoveTo(PlacementOf(options));
   if (options.place) flight.standpoint().GoTo(*options.place);

@@ -41,8 +41,8 @@ struct SkyviewOptions {
   std::optional<double> benchmark;  // seconds
   double fps = 30.0;                // frame rate of the film
   int frames = 1;
-  std::string vsync = "on", quality = "auto", hud = "auto", exposure = "auto";
-  LookTexts look;
+  std::string vsync = "on", quality = "auto", hud = "auto";
+  DisplayOptions display;
   double frame_rate = 20.0;  // target of automatic quality
   double hud_scale = 0.0;    // 0: the scale of the desktop
   bool invert_y = false, explain = false;
@@ -55,12 +55,13 @@ struct SkyviewOptions {
 
 inline void AddPictureLooks(CLI::App& app, SkyviewOptions& options) {
   app.add_option(
-         "--exposure", options.exposure,
+         "--exposure", options.display.exposure,
          "Exposure: auto (the picture is metered), eye (metered, but dusk and night stay darker "
          "than day) or a fixed EV at ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)FlightExposureFromText(text); }))
       ->capture_default_str();
-  AddLookOptions(app, options.look, ToneCurveNames(), "Tone curve of the screen and of PNG files");
+  AddLookOptions(app, options.display, ToneCurveNames(),
+                 "Tone curve of the screen and of PNG files");
 }
 
 inline void AddPlaceOptions(CLI::App& app, SkyviewOptions& options) {

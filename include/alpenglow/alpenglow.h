@@ -13,6 +13,7 @@
 #include <alpenglow/image.h>
 #include <alpenglow/panorama.h>
 #include <alpenglow/place_time.h>
+#include <alpenglow/progress.h>
 #include <alpenglow/scene.h>
 #include <alpenglow/sky.h>
 #include <alpenglow/spectrum.h>

@@ -52,17 +52,26 @@ struct HdrImage {
   }
 };
 
-/// Exposure and colours of an image for a display. The names are those of the programs' options
-/// --tone-map, --look and --white-balance.
+/// Exposure and colours of an image for a display. The texts are those of the programs' options
+/// --tone-map, --look, --white-balance and --exposure.
 struct DisplayOptions {
-  /// Exposure value at ISO 100, in [-30, 30]; by default the image is metered.
-  std::optional<double> ev100;
+  /// Exposure value at ISO 100, in [-30, 30]; by default that of `exposure`.
+  std::optional<double> ev100 = {};
   /// "agx", "aces", "reinhard", "pbr-neutral", "linear", or "local" for local exposure and agx.
   std::string tone_map = "agx";
   /// Look of agx: "photo", "none", "punchy", "medium" or "high".
   std::string look = "photo";
   /// "camera", "daylight", "auto" or kelvins in [1500, 25000], such as "5600".
   std::string white_balance = "camera";
+  /// "auto" meters the image, "eye" too but shows dusk and night darker than day, "incident" exposes
+  /// for the light on a horizontal plane, and a number such as "14.5" is an exposure value.
+  std::string exposure = "auto";
+  /// Illuminance of a horizontal plane [lx], at least 0, which "incident" needs; see
+  /// HorizontalIlluminance().
+  std::optional<double> illuminance_lx = {};
+  /// Show the colours that the dark-adapted eye sees, and panoramas with its acuity. Needs the layer
+  /// "scotopic.Y", which the layer "scotopic" of a still writes.
+  bool night_vision = false;
 };
 
 /// Writes float RGB and all layers as OpenEXR (ZIP), replacing the file atomically. Throws
@@ -77,14 +86,19 @@ void WriteExr(const std::filesystem::path& file, const HdrImage& image);
 /// recognised by the attribute envmap of OpenEXR, which WriteExr() and the programs write.
 [[nodiscard]] HdrImage ReadExr(const std::filesystem::path& file);
 
+/// Returns the exposure value at ISO 100 with which ForDisplay() shows an image. Throws InputError
+/// as ForDisplay() does.
+[[nodiscard]] double ExposureValue(const HdrImage& image, const DisplayOptions& options = {});
+
 /// Returns 8-bit sRGB, three values per pixel: exposed, tone-mapped and dithered. The result is the
-/// same in every run. Throws InputError for an unknown name, a value out of range and for pixels
-/// that are not finite.
+/// same in every run. Throws InputError for an unknown name, a value out of range, an exposure
+/// "incident" without illuminance, and for pixels that are not finite.
 [[nodiscard]] std::vector<std::uint8_t> ForDisplay(const HdrImage& image,
                                                    const DisplayOptions& options = {});
 
-/// Writes ForDisplay() as PNG, replacing the file atomically. Throws InputError as ForDisplay()
-/// does, and OutputError if the file cannot be written.
+/// Writes ForDisplay() as PNG, with the metadata of the image and those of the exposure and the
+/// colours, replacing the file atomically. Throws InputError as ForDisplay() does, and OutputError if
+/// the file cannot be written.
 void WritePng(const std::filesystem::path& file, const HdrImage& image,
               const DisplayOptions& options = {});
 

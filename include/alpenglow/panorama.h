@@ -3,8 +3,12 @@
 /// Panoramas of the whole sphere around one observer, for lighting.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <alpenglow/export.h>
 #include <alpenglow/image.h>
+#include <alpenglow/progress.h>
 #include <alpenglow/sky.h>
 #include <alpenglow/sun_and_moon.h>
 
@@ -28,7 +32,13 @@ struct PanoramaOptions {
   double altitude_m = 2.0;  ///< of the observer, in [-12000, 1e9]; below 0 the view is that from 0
   SunInSky sun;             ///< its default stands 45 degrees high in the south
   PanoramaCentre centre = PanoramaCentre::kNorth;  ///< convention of the program that reads it
-  bool draws_sun = false;  ///< draw the disk: a few pixels of some 1e9 cd/m^2
+  bool draws_sun = false;      ///< draw the disk: a few pixels of some 1e9 cd/m^2
+  bool draws_compass = false;  ///< paint N, E, S and W on the horizon, to check the orientation
+  /// Layers of polarisation, without the disk and the compass: "stokes_q" and "stokes_u" (linear
+  /// sRGB [cd/m^2]; Q is positive for light that vibrates along the vertical of the picture, U from
+  /// its lower left to its upper right), and "polarisation" (of the luminance: degree in [0, 1], and
+  /// angle in degrees clockwise from the vertical, in [-90, 90]).
+  std::vector<std::string> layers;
 };
 
 /// Renders the sky and the ground around an observer, on all processors: longitude-latitude, row 0
@@ -39,9 +49,13 @@ struct PanoramaOptions {
 /// degrees in the air of the earth (asserted by panorama_test). Relative to it or to a thousandth
 /// of the mean of the sky it is below 0.75 % (rms) over the sky in every preset and with every
 /// mixture of aerosols, in mist and with narrow lobes to either side (asserted by same_light_test).
-/// Throws InputError for a member out of range, and for an atmosphere whose wavelengths show no
-/// colours (Atmosphere::ColourOf).
-[[nodiscard]] HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options);
+/// Throws InputError for a member out of range, an unknown layer, and for an atmosphere whose
+/// wavelengths show no colours (Atmosphere::ColourOf), and Cancelled if `progress` ends the work.
+/// @param sky       light of an atmosphere.
+/// @param options   see there.
+/// @param progress  receives the fraction of rows that are done; may be empty.
+[[nodiscard]] HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options,
+                                      const ProgressFunction& progress = {});
 
 /// Returns the illuminance of sun and sky on a horizontal plane at the observer [lx]; the horizon
 /// cuts the disk of the sun. Throws InputError as RenderPanorama() does.

@@ -83,14 +83,11 @@ class Sky {
   /// multiple_scattering_test).
   [[nodiscard]] Spectrum SkyIrradiance(const LocalPoint& point, const Direction& to_sun) const;
 
-  /// The state of a sky, which only the sources of the library know.
-  struct State;
-  /// Makes a sky from its state; used by ReadTables and RenderPanorama.
-  explicit Sky(std::shared_ptr<const State> state);
-  /// Returns the state.
-  [[nodiscard]] const State& state() const { return *state_; }
-
  private:
+  friend struct SkyParts;  // of the sources of the library
+  struct State;
+  explicit Sky(std::shared_ptr<const State> state);
+
   std::shared_ptr<const State> state_;
 };
 

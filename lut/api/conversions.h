@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Conversions between values of the public headers and those of this layer, and the contents of a
-// sky of the public headers. Of a ray,
+// Conversions between values of the public headers and those of this layer. Of a ray,
 //
 //   altitude = z + (x^2 + y^2) / (r + R + z),     r = distance from the centre of the planet
 //
@@ -8,13 +7,14 @@
 #pragma once
 
 #include <alpenglow/geometry.h>
-#include <alpenglow/sky.h>
+#include <alpenglow/progress.h>
 
+#include <cstddef>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <limits>
 
 #include "atmosphere/ray/ray.h"
-#include "lut/table_io/table_folder.h"
 
 namespace alpenglow {
 
@@ -39,11 +39,9 @@ struct AltitudeAndZenith {
     const AltitudeAndZenith& eye, const glm::dvec3& view, const glm::dvec3& to_sun,
     double length_m = std::numeric_limits<double>::infinity());
 
-/// The light of a sky is that of the look-ups. Their tables have multiple scattering, and belong to
-/// the medium of the atmosphere.
-struct Sky::State {
-  Atmosphere parameters;
-  lut::TableLookup lookup;
-};
+/// Returns a function that may be called from any thread after each part of a task, and passes the
+/// fraction of the parts that are done to `progress`. It throws Cancelled if that returns false. The
+/// function holds a copy of `progress`, which may be empty.
+[[nodiscard]] std::function<void()> PartDone(ProgressFunction progress, std::size_t parts);
 
 }  // namespace alpenglow

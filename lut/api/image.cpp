@@ -5,20 +5,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "lut/image/development.h"
 #include "lut/image/exr.h"
 #include "lut/image/image.h"
 #include "lut/image/look.h"
 #include "lut/image/metering.h"
 #include "lut/image/png.h"
-#include "lut/image/white_balance.h"
 
 namespace alpenglow {
+
+using atmosphere::kPi;
+
 namespace {
 
 constexpr std::size_t kLongestChannel = 255;   // of OpenEXR
@@ -68,28 +72,40 @@ Metadata CheckedMetadata(const HdrImage& image) {
   return image.metadata;
 }
 
-struct Developed {
-  lut::DisplayImage display;
-  double ev100;
+/// An image as it is seen before it is exposed, and what exposes it.
+struct Metered {
+  HdrImage seen;
+  lut::ExposureRule rule;
   lut::Look look;
+  double ev100;
 };
 
-Developed DevelopedBy(const HdrImage& image, const DisplayOptions& options) {
-  const lut::ExposureRule rule =
-      options.ev100
-          ? lut::ExposureRule{lut::ExposureRule::Kind::kFixed,
-                              atmosphere::RequireInRange(*options.ev100, -30.0, 30.0, "ev100")}
-          : lut::ExposureRule{};
-  lut::Look look = lut::LookFromName(options.tone_map);
-  look.agx = lut::AgxLookFromName(options.look);
-  look.white = lut::WhiteBalanceFromText(options.white_balance);
-  const lut::PictureView view{ProjectionOf(image)};
+double IlluminanceOf(const DisplayOptions& options) {
+  if (!options.illuminance_lx)
+    throw InputError("exposure is \"incident\", which needs illuminance_lx");
+  return atmosphere::RequireInRange(*options.illuminance_lx, 0.0,
+                                    std::numeric_limits<double>::max(), "illuminance_lx");
+}
+
+Metered MeteredBy(const HdrImage& image, const DisplayOptions& options) {
+  const lut::ExposureRule rule = lut::RuleOf(options);
+  lut::Look look = lut::LookOf(options);
   RequireValid(image);
-  look = lut::Settled(lut::LookUnder(rule, look), image, view);
-  const HdrImage seen = lut::Seen(image, look, view);
-  const double ev100 = lut::Ev100By(
-      rule, lut::MeterEv100(seen, lut::kSunDiskLuminance_cd_per_m2, view.projection), look);
-  return {lut::Develop(seen, ev100, look), ev100, look};
+  const lut::PictureView view{ProjectionOf(image),
+                              image.is_panorama ? 2.0 * kPi / image.width : 0.0};
+  look = lut::Settled(look, image, view);
+  Metered metered{lut::Seen(image, look, view), rule, look, 0.0};
+  metered.ev100 = rule.kind == lut::ExposureRule::Kind::kIncident
+                      ? lut::IncidentEv100(IlluminanceOf(options))
+                      : lut::Ev100By(rule,
+                                     lut::MeterEv100(metered.seen, lut::kSunDiskLuminance_cd_per_m2,
+                                                     view.projection),
+                                     look);
+  return metered;
+}
+
+lut::DisplayImage Developed(const Metered& metered) {
+  return lut::Develop(metered.seen, metered.ev100, metered.look);
 }
 
 }  // namespace
@@ -107,18 +123,21 @@ void WriteExr(const std::filesystem::path& file, const HdrImage& image) {
 
 HdrImage ReadExr(const std::filesystem::path& file) { return lut::ReadExrPicture(file); }
 
+double ExposureValue(const HdrImage& image, const DisplayOptions& options) {
+  return MeteredBy(image, options).ev100;
+}
+
 std::vector<std::uint8_t> ForDisplay(const HdrImage& image, const DisplayOptions& options) {
-  return DevelopedBy(image, options).display.rgb;
+  return Developed(MeteredBy(image, options)).rgb;
 }
 
 void WritePng(const std::filesystem::path& file, const HdrImage& image,
               const DisplayOptions& options) {
-  Metadata metadata = CheckedMetadata(image);
-  const Developed developed = DevelopedBy(image, options);
-  metadata["alpenglow.ev100"] = fmt::format("{:.6f}", developed.ev100);
-  metadata["alpenglow.tone_curve"] = lut::NameOf(developed.look);
-  metadata["alpenglow.white_balance"] = lut::NameOf(developed.look.white);
-  lut::WritePng(file, developed.display, metadata);
+  const Metered metered = MeteredBy(image, options);
+  Metadata metadata = lut::HeaderOfExposure(metered.rule, metered.ev100, RuleInWords(metered.rule));
+  metadata.merge(lut::HeaderOfLook(metered.look));
+  metadata.merge(CheckedMetadata(image));
+  lut::WritePng(file, Developed(metered), metadata);
 }
 
 }  // namespace alpenglow

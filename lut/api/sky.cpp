@@ -13,6 +13,7 @@
 
 #include "atmosphere/base/finite.h"
 #include "lut/api/conversions.h"
+#include "lut/api/sky_parts.h"
 #include "lut/version.h"
 
 namespace alpenglow {
@@ -84,35 +85,36 @@ lut::TableFolder SolvedWithoutTables(const atmosphere::Medium& medium) {
 /// Rays from one eye under one sun.
 class RaysFrom {
  public:
-  RaysFrom(const Sky::State& sky, const LocalPoint& eye, const Direction& to_sun)
-      : sky_(sky),
+  RaysFrom(const Sky& sky, const LocalPoint& eye, const Direction& to_sun)
+      : planet_radius_m_(sky.atmosphere().planet_radius_m()),
+        lookup_(SkyParts::LookupOf(sky)),
         eye_{eye.east_m, eye.north_m, eye.up_m},
-        place_(AltitudeOf(eye, sky.parameters.planet_radius_m())),
+        place_(AltitudeOf(eye, planet_radius_m_)),
         to_sun_(UnitVectorOf(to_sun)) {}
 
   [[nodiscard]] Spectrum Radiance(const Direction& view) const {
-    return SpectrumOf(
-        sky_.lookup.InscatterOfAllOrders(RayFrom(place_, UnitVectorOf(view), to_sun_)));
+    return SpectrumOf(lookup_.InscatterOfAllOrders(RayFrom(place_, UnitVectorOf(view), to_sun_)));
   }
 
   [[nodiscard]] AirBetween Between(const LocalPoint& object) const {
-    static_cast<void>(AltitudeOf(object, sky_.parameters.planet_radius_m()));  // checks it
+    static_cast<void>(AltitudeOf(object, planet_radius_m_));  // checks it
     const glm::dvec3 way = glm::dvec3{object.east_m, object.north_m, object.up_m} - eye_;
     const double length_m = glm::length(way);
     const glm::dvec3 view = length_m > 0.0 ? way / length_m : place_.up;
     const ViewRay ray = RayFrom(place_, view, to_sun_, length_m);
-    const atmosphere::SingleScattering<float>& air = sky_.lookup.single_scattering();
+    const atmosphere::SingleScattering<float>& air = lookup_.single_scattering();
     const auto samples = air.Sample(
-        ray, {.nodes = sky_.lookup.tables().ray_nodes, .split_ozone = false, .dark_samples = true});
+        ray, {.nodes = lookup_.tables().ray_nodes, .split_ozone = false, .dark_samples = true});
     Bands<float> light = air.Inscatter(air.Scatter(samples), ray.nu);
     const Bands<float> more =
-        sky_.lookup.multiple_scattering().InscatterAlong(samples, ray.nu, lut::SegmentEnd::kOpaque);
+        lookup_.multiple_scattering().InscatterAlong(samples, ray.nu, lut::SegmentEnd::kOpaque);
     for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
     return {SpectrumOf(air.TransmittanceAlong(ray)), SpectrumOf(light)};
   }
 
  private:
-  const Sky::State& sky_;
+  double planet_radius_m_;
+  const lut::TableLookup& lookup_;
   glm::dvec3 eye_;
   AltitudeAndZenith place_;
   glm::dvec3 to_sun_;
@@ -120,9 +122,13 @@ class RaysFrom {
 
 }  // namespace
 
+Sky SkyParts::Made(const Atmosphere& atmosphere, lut::TableFolder tables) {
+  return Sky(std::make_shared<const Sky::State>(
+      Sky::State{atmosphere, lut::TableLookup(std::move(tables))}));
+}
+
 Sky::Sky(const Atmosphere& atmosphere)
-    : Sky(std::make_shared<const State>(
-          State{atmosphere, lut::TableLookup(SolvedWithoutTables(atmosphere.medium()))})) {}
+    : Sky(SkyParts::Made(atmosphere, SolvedWithoutTables(atmosphere.medium()))) {}
 
 Sky::Sky(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 
@@ -130,12 +136,12 @@ const Atmosphere& Sky::atmosphere() const { return state_->parameters; }
 
 Spectrum Sky::Radiance(const LocalPoint& eye, const Direction& view,
                        const Direction& to_sun) const {
-  return RaysFrom(*state_, eye, to_sun).Radiance(view);
+  return RaysFrom(*this, eye, to_sun).Radiance(view);
 }
 
 std::vector<Spectrum> Sky::Radiance(const LocalPoint& eye, std::span<const Direction> views,
                                     const Direction& to_sun) const {
-  const RaysFrom rays(*state_, eye, to_sun);
+  const RaysFrom rays(*this, eye, to_sun);
   std::vector<Spectrum> result(views.size());
   tbb::parallel_for(std::size_t{0}, views.size(),
                     [&](std::size_t i) { result[i] = rays.Radiance(views[i]); });
@@ -144,7 +150,7 @@ std::vector<Spectrum> Sky::Radiance(const LocalPoint& eye, std::span<const Direc
 
 AirBetween Sky::Between(const LocalPoint& eye, const LocalPoint& object,
                         const Direction& to_sun) const {
-  return RaysFrom(*state_, eye, to_sun).Between(object);
+  return RaysFrom(*this, eye, to_sun).Between(object);
 }
 
 void Sky::Between(const LocalPoint& eye, std::span<const LocalPoint> objects,
@@ -152,7 +158,7 @@ void Sky::Between(const LocalPoint& eye, std::span<const LocalPoint> objects,
   if (result.size() != objects.size()) {
     throw InputError("the results must be as many as the objects");
   }
-  const RaysFrom rays(*state_, eye, to_sun);
+  const RaysFrom rays(*this, eye, to_sun);
   tbb::parallel_for(std::size_t{0}, objects.size(),
                     [&](std::size_t i) { result[i] = rays.Between(objects[i]); });
 }

@@ -3,44 +3,27 @@
 
 #include <alpenglow/errors.h>
 
+#include <cstddef>
 #include <utility>
 
 #include "lut/api/conversions.h"
+#include "lut/api/sky_parts.h"
 #include "lut/cli/output_file.h"
 #include "lut/table_io/exchange_tables.h"
 #include "lut/table_io/table_folder.h"
 
 namespace alpenglow {
-namespace {
 
-const char* NameOf(BakeQuality quality) {
-  switch (quality) {
-    case BakeQuality::kPreview:
-      return "preview";
-    case BakeQuality::kStandard:
-      return "standard";
-    case BakeQuality::kFine:
-      return "fine";
-  }
-  throw InputError("quality is no BakeQuality");
+void BakeTables(const Atmosphere& atmosphere, const std::filesystem::path& folder,
+                const BakeOptions& options, const ProgressFunction& progress) {
+  const std::size_t rows =
+      lut::ScatteringTable::Rows(lut::SizesOf(options.quality).single_scattering);
+  lut::BuildTableFolder(atmosphere.medium(), options, folder, PartDone(progress, rows));
 }
-
-lut::ExchangeLayout LayoutOf(TableUser user) {
-  switch (user) {
-    case TableUser::kBrunetonDemo:
-      return lut::ExchangeLayout::kBruneton;
-    case TableUser::kThreeAtmosphere:
-      return lut::ExchangeLayout::kTakram;
-  }
-  throw InputError("user is no TableUser");
-}
-
-}  // namespace
 
 void BakeTables(const Atmosphere& atmosphere, const std::filesystem::path& folder,
                 BakeQuality quality) {
-  lut::BuildTableFolder(atmosphere.medium(), lut::TableQualityFromName(NameOf(quality)),
-                        lut::TableOrders::kAll, folder, lut::ProgressStyle::kQuiet);
+  BakeTables(atmosphere, folder, BakeOptions{.quality = quality});
 }
 
 Sky ReadTables(const std::filesystem::path& folder) {
@@ -49,8 +32,7 @@ Sky ReadTables(const std::filesystem::path& folder) {
     throw InputError(folder.string() + ": " + lut::kMultipleScatteringFileName + " is missing");
   }
   const Atmosphere atmosphere(tables.medium);
-  return Sky(std::make_shared<const Sky::State>(
-      Sky::State{atmosphere, lut::TableLookup(std::move(tables))}));
+  return SkyParts::Made(atmosphere, std::move(tables));
 }
 
 Sky ReadTables(const std::filesystem::path& folder, const Atmosphere& expected) {
@@ -67,14 +49,18 @@ std::string DescribeTables(const std::filesystem::path& file_or_folder) {
 }
 
 void ExportTables(const Atmosphere& atmosphere, const std::filesystem::path& folder,
-                  TableUser user) {
-  lut::ExchangeOptions options;
-  options.layout = LayoutOf(user);
+                  const ExportOptions& options, const ProgressFunction& progress) {
+  if (const auto fault = lut::FaultOf(options)) throw InputError(*fault);
   lut::RequireThreeBands(atmosphere.medium());
   lut::MakeFolder(folder);  // before the tables are computed
-  lut::WriteExchangeTables(
-      lut::MakeExchangeTextures(atmosphere.medium(), options, lut::ProgressStyle::kQuiet),
-      atmosphere.medium(), options, folder);
+  lut::WriteExchangeTables(lut::MakeExchangeTextures(atmosphere.medium(), options,
+                                                     PartDone(progress, lut::kExchangeRows)),
+                           atmosphere.medium(), options, folder);
+}
+
+void ExportTables(const Atmosphere& atmosphere, const std::filesystem::path& folder,
+                  TableUser user) {
+  ExportTables(atmosphere, folder, ExportOptions{.user = user});
 }
 
 }  // namespace alpenglow

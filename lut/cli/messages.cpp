@@ -311,6 +311,14 @@ void Prepare(Progress* progress, std::string_view step) {
   if (progress != nullptr) progress->Prepare(step);
 }
 
+ProgressFunction ShownProgress(const std::string& label, std::size_t parts, ProgressStyle style) {
+  return [=, progress = std::shared_ptr<Progress>()](double) mutable {
+    if (!progress) progress = std::make_shared<Progress>(label, parts, style);
+    progress->Advance();
+    return true;
+  };
+}
+
 void Progress::Part(double share) {
   const std::lock_guard<std::mutex> lock(state_->mutex);
   state_->SetPart(share);

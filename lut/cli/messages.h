@@ -6,6 +6,8 @@
 // dropped and the run continues; therefore nothing here throws during the work.
 #pragma once
 
+#include <alpenglow/progress.h>
+
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -90,6 +92,12 @@ class Progress {
 
 /// Calls progress->Prepare(step); does nothing for null.
 void Prepare(Progress* progress, std::string_view step);
+
+/// Returns a function that shows the progress of a task of the library, from its first part on, and
+/// never ends it.
+/// @param parts  number of times that the task calls the function.
+[[nodiscard]] ProgressFunction ShownProgress(const std::string& label, std::size_t parts,
+                                             ProgressStyle style);
 
 /// Returns a duration in readable form: "45s", "3m20s", "2h05m". @param seconds not negative.
 [[nodiscard]] std::string DurationText(double seconds);

@@ -58,6 +58,15 @@ StokesLayer StokesLayerFromName(const std::string& name) {
 
 std::vector<std::string> StokesLayerNames() { return kStokesNames.All(); }
 
+std::vector<StokesLayer> StokesLayersFromNames(const std::vector<std::string>& names) {
+  std::vector<StokesLayer> layers;
+  for (const std::string& name : names) {
+    const StokesLayer layer = StokesLayerFromName(name);
+    if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
+  }
+  return layers;
+}
+
 std::vector<std::string> ChannelsOf(StokesLayer layer) {
   const std::string name = NameOf(layer);
   if (layer == StokesLayer::kPolarisation) return {name + ".degree", name + ".angle"};

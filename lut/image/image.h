@@ -57,6 +57,8 @@ enum class StokesLayer {
 [[nodiscard]] std::string NameOf(StokesLayer layer);
 [[nodiscard]] StokesLayer StokesLayerFromName(const std::string& name);
 [[nodiscard]] std::vector<std::string> StokesLayerNames();
+/// Returns the layers in the order of their names, each once.
+[[nodiscard]] std::vector<StokesLayer> StokesLayersFromNames(const std::vector<std::string>& names);
 /// Returns the names of the layer's channels in the EXR file.
 [[nodiscard]] std::vector<std::string> ChannelsOf(StokesLayer layer);
 

@@ -102,6 +102,19 @@ HdrImage Seen(const HdrImage& image, const Look& look, const PictureView& view) 
   return view.pixel_rad > 0.0 ? WithAcuityOfNight(std::move(seen), view.pixel_rad) : seen;
 }
 
+ExposureRule RuleOf(const DisplayOptions& options) {
+  if (!options.ev100) return ExposureRuleFromText(options.exposure);
+  return {ExposureRule::Kind::kFixed, RequireInRange(*options.ev100, -30.0, 30.0, "ev100")};
+}
+
+Look LookOf(const DisplayOptions& options) {
+  Look look = LookFromName(options.tone_map);
+  look.agx = AgxLookFromName(options.look);
+  look.white = WhiteBalanceFromText(options.white_balance);
+  look.night_vision = options.night_vision;
+  return LookUnder(RuleOf(options), look);
+}
+
 ExposureRule ExposureRuleFromText(const std::string& text) {
   if (text == "incident") return {ExposureRule::Kind::kIncident};
   if (text == "eye") return {ExposureRule::Kind::kEye};

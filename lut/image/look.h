@@ -16,6 +16,7 @@
 
 namespace alpenglow::lut {
 
+/// What DisplayOptions say about the colours of a developed image.
 struct Look {
   ToneCurve curve = ToneCurve::kAgx;
   bool local_exposure = false;  // LocallyExposed
@@ -48,7 +49,7 @@ struct PictureView {
 /// the colours and acuity of the dark-adapted eye (night_vision.h). @param look  must be settled.
 [[nodiscard]] HdrImage Seen(const HdrImage& image, const Look& look, const PictureView& view = {});
 
-/// Rule that determines the exposure of an image.
+/// What DisplayOptions say about the exposure of an image.
 struct ExposureRule {
   enum class Kind {
     kMetered,   // CameraEv100 of the image's MeterEv100
@@ -66,6 +67,11 @@ struct ExposureRule {
 /// subject, not the sky behind it, so its images roll off their highlights. Images with the curve
 /// "linear" do not.
 [[nodiscard]] Look LookUnder(const ExposureRule& rule, Look look);
+
+/// Return exposure and look of options for a display. Throw InputError for an unknown name and for
+/// a value out of range.
+[[nodiscard]] ExposureRule RuleOf(const DisplayOptions& options);
+[[nodiscard]] Look LookOf(const DisplayOptions& options);
 
 /// Parses "auto", "eye", "incident", or a number in [-30, 30]; throws InputError for another text.
 [[nodiscard]] ExposureRule ExposureRuleFromText(const std::string& text);

@@ -13,6 +13,7 @@
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_rays.h"
+#include "lut/report/svg_plot.h"
 #include "lut/sky/panorama.h"
 #include "lut/sky/sky_view.h"
 
@@ -275,12 +276,12 @@ void AddLatitudes(PanoramaStudy& study, const PanoramaAir& shared, int width, in
 /// Returns the wall time of a whole image on all threads, with the sun at 25 degrees, in words.
 std::string PictureTimeText(const PanoramaAir& shared, const ReportEffort& effort) {
   const int width = effort.quick ? 128 : 2048;
-  PanoramaSettings settings;
-  settings.width = width;
-  settings.height = width / 2;
-  settings.sun.elevation_deg = 25.0;
+  PanoramaOptions options;
+  options.width = width;
+  options.height = width / 2;
+  options.sun.elevation_deg = 25.0;
   const double seconds = Built(effort, [&] {
-                           return RenderPanorama(shared.air, shared.multiple_scattering, settings);
+                           return RenderPanorama(shared.air, shared.multiple_scattering, options);
                          }).second;
   return fmt::format(
       "A whole panorama of {} x {} pixels by the sky view, including colours, takes {} on all "

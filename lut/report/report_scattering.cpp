@@ -47,12 +47,14 @@ void AddScatteringTables(RayStudy& study) {
       row, {.size = {.nu = 8, .mu_s = 24, .mu = 64, .altitudes = 16}, .lowest_mu_s = {}});
   row.in_summary = true;
   if (!quick) study.AddScatteringTable(row, {});
-  for (const char* quality : {"preview", "standard", "fine"}) {
-    study.AddScatteringTable(
-        {.series = "table by azimuth", .parameter = "", .in_summary = quality[0] == 's'},
-        {.size = TableQualityFromName(quality).single_scattering,
-         .lowest_mu_s = {},
-         .axes = ScatteringAxes::kAzimuth});
+  for (const BakeQuality quality :
+       {BakeQuality::kPreview, BakeQuality::kStandard, BakeQuality::kFine}) {
+    study.AddScatteringTable({.series = "table by azimuth",
+                              .parameter = "",
+                              .in_summary = quality == BakeQuality::kStandard},
+                             {.size = SizesOf(quality).single_scattering,
+                              .lowest_mu_s = {},
+                              .axes = ScatteringAxes::kAzimuth});
     if (quick) break;
   }
 }
@@ -177,7 +179,7 @@ void AddDegrees(RayStudy& study) {
     options.sun_angles = 56;
     if (usual && !quick) AddMultipleScattering(study, options);
   }
-  if (!quick) AddMultipleScattering(study, TableQualityFromName("fine").multiple_scattering);
+  if (!quick) AddMultipleScattering(study, SizesOf(BakeQuality::kFine).multiple_scattering);
 }
 
 ReportTopic WordsOfAllOrders() {

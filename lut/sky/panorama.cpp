@@ -12,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include "atmosphere/api/conversions.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/finite.h"
@@ -40,13 +41,13 @@ PolarisedLight Along(const SingleScattering<float>& air,
   return light;
 }
 
-constexpr EnumNames kOrientations{{
-    std::pair{PanoramaOrientation::kNorth, "north"},
-    {PanoramaOrientation::kBlender, "blender"},
-    {PanoramaOrientation::kOpenExr, "openexr"},
-    {PanoramaOrientation::kThree, "three"},
-    {PanoramaOrientation::kUnity, "unity"},
-    {PanoramaOrientation::kGodot, "godot"},
+constexpr EnumNames kCentres{{
+    std::pair{PanoramaCentre::kNorth, "north"},
+    {PanoramaCentre::kBlender, "blender"},
+    {PanoramaCentre::kOpenExr, "openexr"},
+    {PanoramaCentre::kThreeJs, "three"},
+    {PanoramaCentre::kUnity, "unity"},
+    {PanoramaCentre::kGodot, "godot"},
 }};
 
 /// View directions of the pixels of a latitude-longitude picture.
@@ -97,9 +98,9 @@ struct LayerPlace {
   std::size_t first_channel;
 };
 
-std::vector<LayerPlace> AddPanoramaLayers(const std::vector<StokesLayer>& layers, HdrImage& image) {
+std::vector<LayerPlace> AddPanoramaLayers(const std::vector<std::string>& names, HdrImage& image) {
   std::vector<LayerPlace> places;
-  for (const StokesLayer layer : layers) {
+  for (const StokesLayer layer : StokesLayersFromNames(names)) {
     places.push_back({layer, image.layers.size()});
     for (const std::string& channel : ChannelsOf(layer))
       image.layers.push_back({channel, std::vector<float>(image.rgb.size(), 0.0F)});
@@ -168,6 +169,7 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const SunInSky& su
   constexpr int kPiecesPerRadius = 12;
   const double zenith = 0.5 * kPi - sun.elevation_rad();
   const double radius = sun.angular_radius_rad();
+  const double sun_azimuth = sun.azimuth_rad();
   const auto parts_of = [radius](double pixel_rad) {
     return static_cast<std::int64_t>(
         std::max(std::ceil(kPiecesPerRadius * pixel_rad / radius), 1.0));
@@ -188,14 +190,14 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const SunInSky& su
       const double weight = std::sin(angle) / static_cast<double>(across);
       const double width_rad = HalfWidthOfDisk(angle, zenith, radius);
       for (int x = 0; x < grid.width; ++x) {
-        const double from_sun = grid.Azimuth(x) - sun.azimuth_rad();
+        const double from_sun = grid.Azimuth(x) - sun_azimuth;
         const double centre =
             std::remainder(-from_sun - kPi / grid.width, 2.0 * kPi) + kPi / grid.width;
         const PartsRange columns = PartsAround(centre / (2.0 * kPi) * grid.width,
                                                width_rad / (2.0 * kPi) * grid.width, across);
         for (std::int64_t i = columns.first; i < columns.last; ++i) {
           const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(across);
-          const double azimuth = grid.Azimuth(x + at) - sun.azimuth_rad();
+          const double azimuth = grid.Azimuth(x + at) - sun_azimuth;
           const double rho =
               2.0 * std::asin(std::sqrt(std::min(HalfSine2(angle, zenith, azimuth), 1.0))) / radius;
           if (rho >= 1.0) continue;
@@ -224,14 +226,14 @@ std::vector<Bands<float>> SharesOf(const std::vector<DiskPiece>& pieces,
   return shares;
 }
 
-void DrawSunDisk(const SingleScattering<float>& air, const PanoramaSettings& settings,
+void DrawSunDisk(const SingleScattering<float>& air, const PanoramaOptions& options,
                  const PanoramaGrid& grid, const std::vector<float>& srgb, HdrImage& image) {
-  const std::vector<DiskPiece> pieces = PiecesOfDisk(grid, settings.sun);
+  const std::vector<DiskPiece> pieces = PiecesOfDisk(grid, options.sun);
   const std::vector<Bands<float>> shares = SharesOf(pieces, air.medium().wavelengths_nm);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const DiskPiece& piece = pieces[i];
     Bands<float> seen =
-        air.TransmittanceToSpace(settings.altitude_m, std::cos(piece.zenith_angle_rad));
+        air.TransmittanceToSpace(options.altitude_m, std::cos(piece.zenith_angle_rad));
     for (std::size_t band = 0; band < seen.count; ++band) seen[band] *= shares[i].value[band];
     const std::array<float, 3> rgb = Srgb(srgb, seen.value.data(), seen.count);
     const auto of_pixel = static_cast<float>(1.0 / grid.SolidAngle(piece.y));
@@ -313,46 +315,46 @@ PolarisedLight PolarisedRow::At(double azimuth_rad) const {
   return light;
 }
 
-PanoramaOrientation PanoramaOrientationFromName(const std::string& name) {
-  if (name == "geographic") return PanoramaOrientation::kNorth;
-  return kOrientations.Named(name, "orientation is \"{0}\"; it must be {2}");
+PanoramaCentre PanoramaCentreFromName(const std::string& name) {
+  if (name == "geographic") return PanoramaCentre::kNorth;
+  return kCentres.Named(name, "orientation is \"{0}\"; it must be {2}");
 }
 
-std::string NameOf(PanoramaOrientation orientation) { return kOrientations.Of(orientation); }
+std::string NameOf(PanoramaCentre centre) { return kCentres.Of(centre); }
 
-double CentreAzimuth(PanoramaOrientation orientation) {
-  switch (orientation) {
-    case PanoramaOrientation::kNorth:
+double CentreAzimuth(PanoramaCentre centre) {
+  switch (centre) {
+    case PanoramaCentre::kNorth:
       return 0.0;
-    case PanoramaOrientation::kBlender:
-    case PanoramaOrientation::kThree:
-    case PanoramaOrientation::kUnity:
+    case PanoramaCentre::kBlender:
+    case PanoramaCentre::kThreeJs:
+    case PanoramaCentre::kUnity:
       return 0.5 * kPi;
-    case PanoramaOrientation::kOpenExr:
-    case PanoramaOrientation::kGodot:
+    case PanoramaCentre::kOpenExr:
+    case PanoramaCentre::kGodot:
       return kPi;
   }
-  throw InternalError("an orientation without a centre");
+  throw InputError("centre is no PanoramaCentre");
 }
 
 HdrImage RenderPanorama(const SingleScattering<float>& air,
-                     const MultipleScattering& multiple_scattering,
-                     const PanoramaSettings& settings, const std::function<void()>& row_done) {
-  HdrImage image(settings.width, settings.height);
-  const double mu_s = std::sin(SunForAir(settings.sun).elevation_rad());
-  const SkyView view = SkyView(air, multiple_scattering, settings.altitude_m, mu_s,
-                               settings.view_size.value_or(FineSize(
-                                   SkyViewSizeFor(air.medium(), settings.altitude_m, mu_s))))
-                           .WithSunSeenAt(0.5 * kPi - settings.sun.elevation_rad());
-  const PanoramaGrid grid{settings.width, settings.height, CentreAzimuth(settings.orientation)};
+                        const MultipleScattering& multiple_scattering,
+                        const PanoramaOptions& options, const std::function<void()>& row_done) {
+  HdrImage image(options.width, options.height);
+  image.is_panorama = true;
+  const double mu_s = std::sin(SunForAir(options.sun).elevation_rad());
+  const SkyView view = SkyView(air, multiple_scattering, options.altitude_m, mu_s,
+                               FineSize(SkyViewSizeFor(air.medium(), options.altitude_m, mu_s)))
+                           .WithSunSeenAt(0.5 * kPi - options.sun.elevation_rad());
+  const PanoramaGrid grid{options.width, options.height, CentreAzimuth(options.centre)};
   std::vector<double> from_sun;
   for (int x = 0; x < grid.width; ++x)
-    from_sun.push_back(grid.Azimuth(x + 0.5) - settings.sun.azimuth_rad());
+    from_sun.push_back(grid.Azimuth(x + 0.5) - options.sun.azimuth_rad());
   const SkyAzimuths azimuths(view, from_sun);
-  const std::vector<float> srgb = SrgbFromRelative(air.medium(), settings.sun.distance_au);
-  const std::vector<LayerPlace> layers = AddPanoramaLayers(settings.layers, image);
+  const std::vector<float> srgb = SrgbFromRelative(air.medium(), options.sun.distance_au);
+  const std::vector<LayerPlace> layers = AddPanoramaLayers(options.layers, image);
   const auto add_polarisation = [&](int y) {
-    const PolarisedRow row(air, multiple_scattering, settings.altitude_m, mu_s,
+    const PolarisedRow row(air, multiple_scattering, options.altitude_m, mu_s,
                            grid.ZenithAngle(y + 0.5));
     for (int x = 0; x < grid.width; ++x) {
       const PolarisedLight light = row.At(from_sun[static_cast<std::size_t>(x)]);
@@ -372,8 +374,8 @@ HdrImage RenderPanorama(const SingleScattering<float>& air,
     row_done();
   });
   ThrowIfInterrupted();
-  if (settings.compass) PaintCompass(grid, image);
-  if (settings.sun_disk) DrawSunDisk(air, settings, grid, srgb, image);
+  if (options.draws_compass) PaintCompass(grid, image);
+  if (options.draws_sun) DrawSunDisk(air, options, grid, srgb, image);
   for (const auto& pixel : image.rgb) RequireFinite(std::span(pixel), "light of a panorama");
   return image;
 }

@@ -19,14 +19,13 @@
 //   Godot                      +y   +z = south        +x = east               -z
 #pragma once
 
-#include <alpenglow/sun_and_moon.h>
+#include <alpenglow/panorama.h>
 
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/image/image.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
@@ -54,39 +53,27 @@ class PolarisedRow {
   std::vector<PolarisedLight> nodes_;
 };
 
-enum class PanoramaOrientation { kNorth, kBlender, kOpenExr, kThree, kUnity, kGodot };
 /// Reads "north" (or "geographic"), "blender", "openexr", "three", "unity", "godot"; throws
 /// InputError for another name.
-[[nodiscard]] PanoramaOrientation PanoramaOrientationFromName(const std::string& name);
-[[nodiscard]] std::string NameOf(PanoramaOrientation orientation);
+[[nodiscard]] PanoramaCentre PanoramaCentreFromName(const std::string& name);
+[[nodiscard]] std::string NameOf(PanoramaCentre centre);
 
-/// Returns the azimuth, from north over east [rad], of the centre of a picture.
-[[nodiscard]] double CentreAzimuth(PanoramaOrientation orientation);
-
-struct PanoramaSettings {
-  int width = 2048;
-  int height = 1024;
-  double altitude_m = 2.0;  // altitude of the observer
-  SunInSky sun;             // with straight rays
-  PanoramaOrientation orientation = PanoramaOrientation::kNorth;
-  bool sun_disk = false;  // draw the sun itself: a few pixels of some 1e9 cd/m^2
-  bool compass = false;   // paint N, E, S and W on the horizontal
-  /// Layers of polarisation to write, without the sun's disk and the compass; no duplicates.
-  std::vector<StokesLayer> layers = {};
-  /// Size of the sky view; the default is finer than SkyViewSizeFor.
-  std::optional<SkyViewSize> view_size;
-};
+/// Returns the azimuth, from north over east [rad], of the centre of a picture. Throws InputError
+/// for a value that is none of the enumeration's.
+[[nodiscard]] double CentreAzimuth(PanoramaCentre centre);
 
 /// Renders linear sRGB in cd/m^2: the sky with all orders of scattering, and below the horizon the
 /// medium's Lambertian ground lit by sun and sky, with the air in front of it. The sun's disk, if
 /// requested, adds its whole light, distributed over the pixels that it touches. The result is the
 /// same for any number of threads. Error of luminance against direct evaluation at pixel centres,
 /// relative to it or to 1e-4 of the brightest pixel: rms below 0.1 % with the sun over 10 degrees,
-/// below 0.3 % down to -10. Throws InputError for a size outside [1, kLargestImageSide].
-/// @param row_done  called once per row, from any thread.
+/// below 0.3 % down to -10. Throws InputError for a size outside [1, kLargestImageSide] and an
+/// unknown layer. Other members are checked by the function of the public header, which calls this
+/// one.
+/// @param row_done  called once per row, from any thread; an exception ends the work.
 [[nodiscard]] HdrImage RenderPanorama(
     const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-    const PanoramaSettings& settings, const std::function<void()>& row_done = [] {});
+    const PanoramaOptions& options, const std::function<void()>& row_done = [] {});
 
 /// Returns the illuminance [lx] of a horizontal plane by sun and sky at the observer, with the
 /// sun's disk cut by the horizon.

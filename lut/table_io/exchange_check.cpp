@@ -39,12 +39,12 @@ std::optional<TexelFormat> FormatOfFolder(const fs::path& folder) {
 
 /// Returns layout and format. The only .exr files of Bruneton's layout are written by this program,
 /// because the demo reads none; they state their layout.
-ExchangeOptions OptionsOf(const fs::path& folder) {
+ExportOptions OptionsOf(const fs::path& folder) {
   const std::optional<TexelFormat> format = FormatOfFolder(folder);
   if (!format) RefuseFile(folder, "has no scattering.exr, .bin or .dat");
-  ExchangeOptions options{.format = format};
+  ExportOptions options{.format = format};
   if (*format == TexelFormat::kDat) {
-    options.layout = ExchangeLayout::kBruneton;
+    options.user = TableUser::kBrunetonDemo;
     options.type = TexelType::kFloat;
   } else if (*format == TexelFormat::kBin) {
     options.type = TexelType::kHalf;
@@ -53,7 +53,7 @@ ExchangeOptions OptionsOf(const fs::path& folder) {
     options.type = image.IsHalf() ? TexelType::kHalf : TexelType::kFloat;
     const bool bruneton = image.Has("alpenglow.layout") &&
                           image.Attribute("alpenglow.layout").starts_with("bruneton");
-    if (bruneton) options.layout = ExchangeLayout::kBruneton;
+    if (bruneton) options.user = TableUser::kBrunetonDemo;
   }
   return options;
 }
@@ -122,12 +122,12 @@ std::vector<float> ImageTexels(const fs::path& file, const TextureShape& shape, 
 }
 
 std::vector<float> TexelsOf(const fs::path& file, const TextureShape& shape,
-                            const ExchangeOptions& options) {
+                            const ExportOptions& options) {
   std::error_code error;
   if (!fs::is_regular_file(file, error))
     RefuseFile(file, "is missing; the whole set is not loaded");
   if (options.format == TexelFormat::kExr) {
-    return ImageTexels(file, shape, options.layout == ExchangeLayout::kTakram);
+    return ImageTexels(file, shape, options.user == TableUser::kThreeAtmosphere);
   }
   return RawTexels(file, shape.width * shape.height * shape.depth, *options.type);
 }
@@ -309,11 +309,11 @@ struct BestSun {
 };
 
 BestSun LowestSunIn(const std::vector<float>& scattering, const Medium& medium,
-                    const MultipleScattering& light, const ExchangeOptions& options) {
+                    const MultipleScattering& light, const ExportOptions& options) {
   BestSun best;
   double least = std::numeric_limits<double>::infinity();
   for (const double angle_deg : {kDemoLowestSun_deg, kLowestSun_deg}) {
-    ExchangeOptions tried = options;
+    ExportOptions tried = options;
     tried.lowest_sun_deg = angle_deg;
     std::vector<CheckedTexel> checked = CheckedTexels(medium, LowestSunOf(tried), light);
     const double median = ScatteringErrors("scattering", scattering, checked).Quantile(0.5);
@@ -332,7 +332,7 @@ void RequireAgreement(const fs::path& file, const ErrorStatistics& errors, const
                         medium.name, 100.0 * errors.Quantile(0.5), 100.0 * kLargestMedian));
 }
 
-fs::path FileOf(const fs::path& folder, const TextureShape& shape, const ExchangeOptions& options) {
+fs::path FileOf(const fs::path& folder, const TextureShape& shape, const ExportOptions& options) {
   return folder / (std::string(shape.name) + SuffixOf(*options.format));
 }
 
@@ -348,8 +348,8 @@ struct LoadedTexture {
   std::vector<float> texels;
 };
 
-LoadedTexture Load(const fs::path& folder, const TextureShape& shape,
-                   const ExchangeOptions& options, const Medium& medium) {
+LoadedTexture Load(const fs::path& folder, const TextureShape& shape, const ExportOptions& options,
+                   const Medium& medium) {
   const fs::path file = FileOf(folder, shape, options);
   LoadedTexture loaded;
   loaded.texels = TexelsOf(file, shape, options);
@@ -388,7 +388,7 @@ std::optional<fs::path> ExchangeFolderOf(const fs::path& file_or_folder) {
   if (FormatOfFolder(file_or_folder)) return file_or_folder;
   const std::optional<TexelFormat> format = FormatOfFolder(file_or_folder.parent_path());
   if (!format || !HasExtension(file_or_folder, SuffixOf(*format))) return std::nullopt;
-  for (const TextureShape& shape : ShapesOf(ExchangeLayout::kTakram)) {
+  for (const TextureShape& shape : ShapesOf(TableUser::kThreeAtmosphere)) {
     if (file_or_folder.stem() == shape.name) return file_or_folder.parent_path();
   }
   return std::nullopt;
@@ -404,9 +404,9 @@ ExchangeDescription DescribeExchangeTables(const fs::path& folder) {
   if (IsTheMediumThatLoadersAssume(description.medium)) description.medium.name = "bruneton2017";
   const Medium& medium = description.medium;
   RequireThreeBands(medium);
-  ExchangeOptions& options = description.options;
+  ExportOptions& options = description.options;
   std::vector<LoadedTexture> loaded;
-  for (const TextureShape& shape : ShapesOf(options.layout)) {
+  for (const TextureShape& shape : ShapesOf(options.user)) {
     if (IsOptional(shape) && !fs::exists(FileOf(folder, shape, options), error)) {
       description.absent.push_back(FileOf(folder, shape, options));
       continue;
@@ -429,8 +429,8 @@ ExchangeDescription DescribeExchangeTables(const fs::path& folder) {
 
 std::string DescriptionText(const fs::path& folder, const ExchangeDescription& description) {
   const Medium& medium = description.medium;
-  const ExchangeOptions& options = description.options;
-  const bool takram = options.layout == ExchangeLayout::kTakram;
+  const ExportOptions& options = description.options;
+  const bool takram = options.user == TableUser::kThreeAtmosphere;
   std::string text = fmt::format(
       "{}\n"
       "  layout      {}, {} {}\n"

@@ -33,7 +33,7 @@ struct ExchangeDescription {
     /// over texels with more than a thousandth of the largest value.
     ErrorStatistics errors;
   };
-  ExchangeOptions options;  // type: from the first file
+  ExportOptions options;  // type: from the first file
   Medium medium;
   bool medium_is_assumed = false;  // bruneton2017, because there is no atmosphere.toml
   std::vector<Texture> textures;

@@ -53,14 +53,14 @@ constexpr MultipleScatteringOptions kFourOrders{.altitudes = 32,
                                                 .exact_orders = 3};
 constexpr Sampling kHigherOrderSampling{.nodes = 12, .split_ozone = false, .dark_samples = true};
 
-TexelType TypeOf(const ExchangeOptions& options) {
-  return options.type.value_or(options.layout == ExchangeLayout::kTakram ? TexelType::kHalf
-                                                                         : TexelType::kFloat);
+TexelType TypeOf(const ExportOptions& options) {
+  return options.type.value_or(options.user == TableUser::kThreeAtmosphere ? TexelType::kHalf
+                                                                           : TexelType::kFloat);
 }
 
-TexelFormat FormatOf(const ExchangeOptions& options) {
-  return options.format.value_or(options.layout == ExchangeLayout::kTakram ? TexelFormat::kExr
-                                                                           : TexelFormat::kDat);
+TexelFormat FormatOf(const ExportOptions& options) {
+  return options.format.value_or(options.user == TableUser::kThreeAtmosphere ? TexelFormat::kExr
+                                                                             : TexelFormat::kDat);
 }
 
 /// Returns a texel. Red, green and blue are the bands from the longest wavelength to the shortest.
@@ -141,13 +141,13 @@ class HigherOrdersOfRays {
 /// Returns scattering, higher_order_scattering, single_mie_scattering.
 std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium,
                                                   const MultipleScattering& light,
-                                                  double lowest_mu_s, ProgressStyle style) {
+                                                  double lowest_mu_s,
+                                                  const std::function<void()>& row_done) {
   const std::size_t rows = ScatteringTable::Rows(kScatteringSize);
-  Progress progress("scattering", 2 * rows, style);
   const ScatteringTable once(medium, {.size = kScatteringSize, .lowest_mu_s = lowest_mu_s},
-                             &progress);
+                             row_done);
   const HigherOrdersOfRays higher(once, light);
-  const std::vector<TextureShape> shapes = ShapesOf(ExchangeLayout::kTakram);
+  const std::vector<TextureShape> shapes = ShapesOf(TableUser::kThreeAtmosphere);
   std::array<ExchangeTexture, 3> textures{EmptyTexture(shapes[2]), EmptyTexture(shapes[3]),
                                           EmptyTexture(shapes[4])};
   const std::size_t width = textures[0].width;
@@ -172,7 +172,7 @@ std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium,
       Put(textures[1], row * width + x, RgbaTexel(medium, orders, true, 0.0F));
       Put(textures[2], row * width + x, mie_rgb);
     }
-    progress.Advance();
+    row_done();
   });
   ThrowIfInterrupted();
   return textures;
@@ -190,9 +190,9 @@ std::vector<float> UpsideDown(const ExchangeTexture& texture) {
   return values;
 }
 
-void WriteExr(const fs::path& file, const ExchangeTexture& texture, const ExchangeOptions& options,
+void WriteExr(const fs::path& file, const ExchangeTexture& texture, const ExportOptions& options,
               const Medium& medium) {
-  const bool reversed = options.layout == ExchangeLayout::kTakram;
+  const bool reversed = options.user == TableUser::kThreeAtmosphere;
   const std::vector<float> values = reversed ? UpsideDown(texture) : texture.rgba;
   const TableImage image{texture.width,
                          texture.height * texture.depth,
@@ -221,12 +221,12 @@ std::string LittleEndian(const std::vector<float>& values, TexelType type) {
   return bytes;
 }
 
-std::string MediumText(const Medium& medium, const ExchangeOptions& options) {
+std::string MediumText(const Medium& medium, const ExportOptions& options) {
   return fmt::format(
       "# What the tables beside this file were made for, by {}.\n"
       "# Layout {}, {} texels, lowest sun {} degrees from the zenith (cosine {:.6f}); medium {}, "
       "hash {:016x}.\n{}",
-      ProducerText(), options.layout == ExchangeLayout::kTakram ? "takram" : "bruneton",
+      ProducerText(), options.user == TableUser::kThreeAtmosphere ? "takram" : "bruneton",
       TypeOf(options) == TexelType::kHalf ? "half" : "float", LowestSunAngle_deg(options),
       LowestSunOf(options), medium.name, MediumHash(medium), TomlFromMedium(medium));
 }
@@ -236,6 +236,12 @@ std::string MediumText(const Medium& medium, const ExchangeOptions& options) {
 double PhaseOverThatOfLoaders(const Medium& medium, std::size_t band, double nu) {
   return shared::PhaseMolecules<double>(nu, Depolarisation(medium, band)) /
          shared::PhaseRayleigh<double>(nu);
+}
+
+TableUser TableUserFromName(std::string_view name) {
+  constexpr EnumNames kNames{
+      {std::pair{TableUser::kBrunetonDemo, "bruneton"}, {TableUser::kThreeAtmosphere, "takram"}}};
+  return kNames.Named(name, "layout is \"{0}\"; it must be {2}");
 }
 
 TexelType TexelTypeFromName(std::string_view name) {
@@ -250,13 +256,15 @@ TexelFormat TexelFormatFromName(std::string_view name) {
 
 std::vector<std::string> TexelFormatNames() { return kTexelFormats.All(); }
 
-std::optional<std::string> FaultOf(const ExchangeOptions& options) {
+std::optional<std::string> FaultOf(const ExportOptions& options) {
+  if (options.user != TableUser::kThreeAtmosphere && options.user != TableUser::kBrunetonDemo)
+    return "user is no TableUser";
   const TexelFormat format = FormatOf(options);
   const double sun_deg = LowestSunAngle_deg(options);
   if (sun_deg != kDemoLowestSun_deg && sun_deg != kLowestSun_deg) {
     return fmt::format("a lowest sun is 102 or 120 degrees from the zenith, not {}", sun_deg);
   }
-  if (options.layout == ExchangeLayout::kTakram) {
+  if (options.user == TableUser::kThreeAtmosphere) {
     if (format == TexelFormat::kDat) return "layout takram is exr or bin, not dat";
     if (format == TexelFormat::kBin && TypeOf(options) == TexelType::kFloat) {
       return "layout takram reads bin as half, not float";
@@ -271,12 +279,12 @@ std::optional<std::string> FaultOf(const ExchangeOptions& options) {
   return std::nullopt;
 }
 
-double LowestSunAngle_deg(const ExchangeOptions& options) {
+double LowestSunAngle_deg(const ExportOptions& options) {
   return options.lowest_sun_deg.value_or(
-      options.layout == ExchangeLayout::kTakram ? kLowestSun_deg : kDemoLowestSun_deg);
+      options.user == TableUser::kThreeAtmosphere ? kLowestSun_deg : kDemoLowestSun_deg);
 }
 
-double LowestSunOf(const ExchangeOptions& options) {
+double LowestSunOf(const ExportOptions& options) {
   const double sun_deg = LowestSunAngle_deg(options);
   return sun_deg == kLowestSun_deg ? -0.5 : std::cos(sun_deg / 180.0 * kPi);
 }
@@ -288,10 +296,10 @@ void RequireThreeBands(const Medium& medium) {
       medium.wavelengths_nm.size()));
 }
 
-std::vector<TextureShape> ShapesOf(ExchangeLayout layout) {
+std::vector<TextureShape> ShapesOf(TableUser user) {
   std::vector<TextureShape> shapes{kTransmittanceShape, kIrradianceShape,
                                    ScatteringShape("scattering")};
-  if (layout == ExchangeLayout::kTakram) {
+  if (user == TableUser::kThreeAtmosphere) {
     shapes.push_back(ScatteringShape("higher_order_scattering"));
     shapes.push_back(ScatteringShape("single_mie_scattering"));
   }
@@ -314,15 +322,16 @@ bool IsTheMediumThatLoadersAssume(const Medium& medium) {
 }
 
 std::vector<ExchangeTexture> MakeExchangeTextures(const Medium& medium,
-                                                  const ExchangeOptions& options,
-                                                  ProgressStyle style) {
+                                                  const ExportOptions& options,
+                                                  const std::function<void()>& row_done) {
   RequireThreeBands(medium);
   const MultipleScattering light = FourOrdersOf(medium);
   std::vector<ExchangeTexture> textures{TransmittanceTexture(medium),
                                         IrradianceTexture(medium, light)};
-  auto [scattering, higher, mie] = ScatteringTextures(medium, light, LowestSunOf(options), style);
+  auto [scattering, higher, mie] =
+      ScatteringTextures(medium, light, LowestSunOf(options), row_done);
   textures.push_back(std::move(scattering));
-  if (options.layout == ExchangeLayout::kTakram) {
+  if (options.user == TableUser::kThreeAtmosphere) {
     textures.push_back(std::move(higher));
     textures.push_back(std::move(mie));
   }
@@ -330,7 +339,7 @@ std::vector<ExchangeTexture> MakeExchangeTextures(const Medium& medium,
 }
 
 void WriteExchangeTables(const std::vector<ExchangeTexture>& textures, const Medium& medium,
-                         const ExchangeOptions& options, const fs::path& folder) {
+                         const ExportOptions& options, const fs::path& folder) {
   if (const auto fault = FaultOf(options)) throw InputError(*fault);
   MakeFolder(folder);
   const TexelFormat format = FormatOf(options);

@@ -29,13 +29,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "lut/cli/messages.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/table_io/table_image.h"
 #include "lut/tables/scattering_table.h"
@@ -45,12 +45,9 @@ namespace alpenglow::lut {
 /// Name of the file beside the tables that holds their medium.
 inline constexpr const char* kMediumFileName = "atmosphere.toml";
 
-enum class ExchangeLayout { kBruneton, kTakram };
-/// Format of the files. kDat and kBin hold only texels, little-endian, RGBA interleaved, x fastest,
-/// first row of the first layer first.
-enum class TexelFormat { kExr, kBin, kDat };
-
-/// Parse "float" or "half", and "exr", "bin" or "dat". Throw InputError for other names.
+/// Parse "bruneton" or "takram", "float" or "half", and "exr", "bin" or "dat". Throw InputError for
+/// other names.
+[[nodiscard]] TableUser TableUserFromName(std::string_view name);
 [[nodiscard]] TexelType TexelTypeFromName(std::string_view name);
 [[nodiscard]] std::vector<std::string> TexelTypeNames();
 [[nodiscard]] TexelFormat TexelFormatFromName(std::string_view name);
@@ -60,26 +57,18 @@ enum class TexelFormat { kExr, kBin, kDat };
 /// @param nu  cosine of the scattering angle.
 [[nodiscard]] double PhaseOverThatOfLoaders(const Medium& medium, std::size_t band, double nu);
 
-struct ExchangeOptions {
-  ExchangeLayout layout = ExchangeLayout::kTakram;
-  /// Default (nullopt): takram half .exr, bruneton float .dat.
-  std::optional<TexelType> type = {};
-  std::optional<TexelFormat> format = {};
-  /// Zenith angle, kDemoLowestSun_deg or kLowestSun_deg; by default (nullopt) the value of the
-  /// unmodified program.
-  std::optional<double> lowest_sun_deg = {};
-};
+/// Values of ExportOptions::lowest_sun_deg.
 inline constexpr double kDemoLowestSun_deg = 102.0;
 inline constexpr double kLowestSun_deg = 120.0;
 
 /// Returns the reason why no program loads such files: takram has no .dat, its .bin is half, its
-/// lowest sun 120 degrees; bruneton has no .bin, its .dat is float. Returns nullopt if a program
-/// loads them.
-[[nodiscard]] std::optional<std::string> FaultOf(const ExchangeOptions& options);
+/// lowest sun 120 degrees; bruneton has no .bin, its .dat is float; other values of `user` are no
+/// programs. Returns nullopt if a program loads them.
+[[nodiscard]] std::optional<std::string> FaultOf(const ExportOptions& options);
 
 /// Return the zenith angle of the lowest sun of these options, and its cosine.
-[[nodiscard]] double LowestSunAngle_deg(const ExchangeOptions& options);
-[[nodiscard]] double LowestSunOf(const ExchangeOptions& options);
+[[nodiscard]] double LowestSunAngle_deg(const ExportOptions& options);
+[[nodiscard]] double LowestSunOf(const ExportOptions& options);
 
 /// Throws InputError unless the medium has red, green and blue.
 void RequireThreeBands(const Medium& medium);
@@ -98,8 +87,8 @@ inline constexpr TextureShape kIrradianceShape{"irradiance", 64, 16, 1};
 inline constexpr ScatteringTableSize kExchangeScatteringSize{
     .nu = 8, .mu_s = 32, .mu = 128, .altitudes = 32};
 
-/// Returns the textures of a layout, in the order of MakeExchangeTextures.
-[[nodiscard]] std::vector<TextureShape> ShapesOf(ExchangeLayout layout);
+/// Returns the textures of a program, in the order of MakeExchangeTextures.
+[[nodiscard]] std::vector<TextureShape> ShapesOf(TableUser user);
 
 /// Returns ".exr", ".bin" or ".dat".
 [[nodiscard]] std::string SuffixOf(TexelFormat format);
@@ -118,11 +107,15 @@ struct ExchangeTexture {
   std::vector<float> rgba;
 };
 
-/// Returns all textures of a layout. The result does not depend on the number of threads. Throws
+/// Number of calls of `row_done` by MakeExchangeTextures.
+inline constexpr std::size_t kExchangeRows = 2 * ScatteringTable::Rows(kExchangeScatteringSize);
+
+/// Returns all textures of a program. The result does not depend on the number of threads. Throws
 /// InputError unless the medium has three wavelengths.
-[[nodiscard]] std::vector<ExchangeTexture> MakeExchangeTextures(const Medium& medium,
-                                                                const ExchangeOptions& options,
-                                                                ProgressStyle style);
+/// @param row_done  is called after each row, from any thread; an exception ends the work.
+[[nodiscard]] std::vector<ExchangeTexture> MakeExchangeTextures(
+    const Medium& medium, const ExportOptions& options,
+    const std::function<void()>& row_done = [] {});
 
 /// Writes the textures into a folder, which is created if it is missing: one file NAME.exr or .bin
 /// or .dat each, and atmosphere.toml, the medium that they were made for. EXR files have channels R
@@ -130,6 +123,6 @@ struct ExchangeTexture {
 /// (last row of the last layer on top), as its loader requires. Throws InputError (see FaultOf) and
 /// OutputError.
 void WriteExchangeTables(const std::vector<ExchangeTexture>& textures, const Medium& medium,
-                         const ExchangeOptions& options, const std::filesystem::path& folder);
+                         const ExportOptions& options, const std::filesystem::path& folder);
 
 }  // namespace alpenglow::lut

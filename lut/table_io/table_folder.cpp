@@ -9,59 +9,66 @@
 #include <system_error>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/names.h"
 #include "lut/cli/output_file.h"
 
 namespace alpenglow::lut {
 
 namespace fs = std::filesystem;
 
-TableQuality TableQualityFromName(std::string_view name) {
-  if (name == "preview") {
-    return {{.mu = 128, .altitudes = 32},
-            {.nu = 6, .mu_s = 16, .mu = 32, .altitudes = 24},
-            {.altitudes = 14,
-             .sun_angles = 28,
-             .degree = 2,
-             .zenith_nodes = 8,
-             .azimuth_nodes = 6,
-             .ray_nodes = 8},
-            8};
-  }
-  if (name == "standard") {
-    return {{}, {.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 48}, {}, 12};
-  }
-  if (name == "fine") {
-    return {{.mu = 512, .altitudes = 128},
-            {.nu = 10, .mu_s = 48, .mu = 96, .altitudes = 64},
-            {.altitudes = 32,
-             .sun_angles = 64,
-             .degree = 6,
-             .zenith_nodes = 14,
-             .azimuth_nodes = 12,
-             .ray_nodes = 14},
-            16};
-  }
-  throw InputError(fmt::format("quality is \"{}\"; it must be preview, standard or fine", name));
+BakeQuality BakeQualityFromName(std::string_view name) {
+  constexpr EnumNames kNames{{std::pair{BakeQuality::kPreview, "preview"},
+                              {BakeQuality::kStandard, "standard"},
+                              {BakeQuality::kFine, "fine"}}};
+  return kNames.Named(name, "quality is \"{0}\"; it must be {2}");
 }
 
-void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOrders orders,
-                      const fs::path& folder, ProgressStyle style) {
+TableSizes SizesOf(BakeQuality quality) {
+  switch (quality) {
+    case BakeQuality::kPreview:
+      return {{.mu = 128, .altitudes = 32},
+              {.nu = 6, .mu_s = 16, .mu = 32, .altitudes = 24},
+              {.altitudes = 14,
+               .sun_angles = 28,
+               .degree = 2,
+               .zenith_nodes = 8,
+               .azimuth_nodes = 6,
+               .ray_nodes = 8},
+              8};
+    case BakeQuality::kStandard:
+      return {{}, {.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 48}, {}, 12};
+    case BakeQuality::kFine:
+      return {{.mu = 512, .altitudes = 128},
+              {.nu = 10, .mu_s = 48, .mu = 96, .altitudes = 64},
+              {.altitudes = 32,
+               .sun_angles = 64,
+               .degree = 6,
+               .zenith_nodes = 14,
+               .azimuth_nodes = 12,
+               .ray_nodes = 14},
+              16};
+  }
+  throw InputError("quality is no BakeQuality");
+}
+
+void BuildTableFolder(const Medium& medium, const BakeOptions& options, const fs::path& folder,
+                      const std::function<void()>& row_done) {
+  const TableSizes sizes = SizesOf(options.quality);
   MakeFolder(folder);
   // Remove the file of an earlier build, because it would describe the new tables wrongly. The new
   // file is written last.
   std::error_code error;
   fs::remove(folder / kMultipleScatteringFileName, error);
-  WriteTable(folder / kTransmittanceFileName, TransmittanceTable(medium, quality.transmittance));
-  Progress progress("single scattering", ScatteringTable::Rows(quality.single_scattering), style);
+  WriteTable(folder / kTransmittanceFileName, TransmittanceTable(medium, sizes.transmittance));
   WriteTable(folder / kSingleScatteringFileName, ScatteringTable(medium,
-                                                                 {.size = quality.single_scattering,
+                                                                 {.size = sizes.single_scattering,
                                                                   .lowest_mu_s = {},
                                                                   .axes = ScatteringAxes::kAzimuth},
-                                                                 &progress));
-  if (orders == TableOrders::kSingleOnly) return;
+                                                                 row_done));
+  if (options.single_scattering_only) return;
   WriteTable(folder / kMultipleScatteringFileName,
-             MultipleScattering(medium, RaisedFor(medium, quality.multiple_scattering)),
-             {.ray_nodes = quality.ray_nodes});
+             MultipleScattering(medium, RaisedFor(medium, sizes.multiple_scattering)),
+             {.ray_nodes = sizes.ray_nodes});
 }
 
 TableFolder ReadTableFolder(const fs::path& folder,

@@ -12,35 +12,39 @@
 // the moments of multiple scattering, on the same nodes as light scattered once.
 #pragma once
 
+#include <alpenglow/tables.h>
+
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "lut/cli/messages.h"
 #include "lut/table_io/table_file.h"
 
 namespace alpenglow::lut {
 
-/// Resolution of the tables. Sizes and build times: skylut build --help.
-struct TableQuality {
+/// Sizes of the tables of a BakeQuality.
+struct TableSizes {
   TransmittanceTableSize transmittance;
   ScatteringTableSize single_scattering;
   MultipleScatteringOptions multiple_scattering;  // in clear air; see RaisedFor
   int ray_nodes = 12;
 };
 
-/// Orders of scattering that the tables of a folder contain.
-enum class TableOrders { kAll, kSingleOnly };
-
 /// Parses "preview", "standard" or "fine"; throws InputError for another name.
-[[nodiscard]] TableQuality TableQualityFromName(std::string_view name);
+[[nodiscard]] BakeQuality BakeQualityFromName(std::string_view name);
 
-/// Builds and writes every table, each file atomically; creates the folder if it is missing. Throws
+/// Returns the sizes of a quality. Throws InputError for a value that is none of the enumeration's.
+[[nodiscard]] TableSizes SizesOf(BakeQuality quality);
+
+/// Builds and writes the tables, each file atomically; creates the folder if it is missing. Throws
 /// OutputError naming the file that could not be written.
-void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOrders orders,
-                      const std::filesystem::path& folder, ProgressStyle style);
+/// @param row_done  is called after each row of single scattering, from any thread; an exception
+///   ends the work.
+void BuildTableFolder(const Medium& medium, const BakeOptions& options,
+                      const std::filesystem::path& folder, const std::function<void()>& row_done);
 
 /// Tables of one medium. Quantities without a table are integrated where they are needed (see
 /// FolderUse).

@@ -7,6 +7,8 @@
 // memory is allocated.
 #pragma once
 
+#include <alpenglow/tables.h>
+
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -19,7 +21,6 @@ namespace alpenglow::lut {
 
 using TextAttributes = std::map<std::string, std::string>;
 
-enum class TexelType { kFloat, kHalf };
 enum class TexelTypes { kFloat, kFloatOrHalf };
 
 /// Contents of an image. Values are interleaved: (row * width + column) * channels + channel.

@@ -59,12 +59,12 @@ double LowestUsefulSun(const Medium& medium) {
 }
 
 ScatteringTable::ScatteringTable(const Medium& medium, const ScatteringTableOptions& options,
-                                 Progress* progress)
+                                 const std::function<void()>& row_done)
     : ScatteringTable(medium, options, std::vector<float>(RequireSize(medium, options.size))) {
   tbb::parallel_for(std::size_t{0}, Rows(size_), [&](std::size_t row) {
     if (Interrupted()) return;
     FillRow(row);
-    if (progress != nullptr) progress->Advance();
+    row_done();
   });
   ThrowIfInterrupted();
 }

@@ -20,13 +20,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/cli/messages.h"
 #include "lut/tables/table_axes.h"
 #include "lut/tables/transmittance_table.h"
 
@@ -56,11 +56,13 @@ struct ScatteringTableOptions {
 class ScatteringTable {
  public:
   /// Integrates every texel in parallel; the bytes do not depend on the number of threads.
-  /// `progress` advances by one per row, of which there are Rows(size). Stops between rows if the
-  /// program is interrupted. Throws InputError, with the size in bytes, for a size that is not
-  /// allowed.
-  explicit ScatteringTable(const Medium& medium, const ScatteringTableOptions& options = {},
-                           Progress* progress = nullptr);
+  /// Stops between rows if the program is interrupted. Throws InputError, with the size in bytes,
+  /// for a size that is not allowed.
+  /// @param row_done  is called after each of the Rows(size) rows, from any thread; an exception
+  ///   ends the work.
+  explicit ScatteringTable(
+      const Medium& medium, const ScatteringTableOptions& options = {},
+      const std::function<void()>& row_done = [] {});
 
   /// Restores a stored table: texels as returned by texels(). Throws InputError unless their number
   /// matches the size and all lie in [0, 1].
@@ -87,7 +89,7 @@ class ScatteringTable {
   [[nodiscard]] ScatteringAxes axes() const { return axes_; }
   /// Size of the texels [bytes].
   [[nodiscard]] std::uint64_t bytes() const { return texels_.size() * sizeof(float); }
-  [[nodiscard]] static std::size_t Rows(const ScatteringTableSize& size) {
+  [[nodiscard]] static constexpr std::size_t Rows(const ScatteringTableSize& size) {
     return size.mu * size.altitudes;
   }
 

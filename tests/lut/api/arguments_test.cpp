@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "lut/api/conversions.h"
+#include "lut/api/sky_parts.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/small_light.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -34,8 +34,7 @@ Sky CoarseSky(const Atmosphere& atmosphere) {
   lut::TableFolder tables;
   tables.medium = atmosphere.medium();
   tables.multiple_scattering.emplace(tables.medium, tests::kSmallLight);
-  return Sky(std::make_shared<const Sky::State>(
-      Sky::State{atmosphere, lut::TableLookup(std::move(tables))}));
+  return SkyParts::Made(atmosphere, std::move(tables));
 }
 
 const Sky& Earth() {
@@ -122,6 +121,7 @@ TEST(Arguments, OfPanoramasAreRefusedByName) {
   EXPECT_THAT(fault([](auto& o) { o.width = 0; }), HasSubstr("width is 0"));
   EXPECT_THAT(fault([](auto& o) { o.height = -4; }), HasSubstr("height is -4"));
   EXPECT_THAT(fault([](auto& o) { o.height = 32769; }), HasSubstr("[1, 32768]"));
+  EXPECT_THAT(fault([](auto& o) { o.layers = {"stokes_v"}; }), HasSubstr("layer \"stokes_v\""));
   for (const double altitude_m : {kNan, kInfinity, -12001.0, 1e15}) {
     EXPECT_THAT(fault([&](auto& o) { o.altitude_m = altitude_m; }),
                 AllOf(HasSubstr("altitude_m is"), HasSubstr("[-12000, 1000000000]")));

@@ -100,8 +100,30 @@ TEST_F(ApiImage, IsShownAsByTheLayerBelow) {
   EXPECT_EQ(lut::ReadPng(folder_ / "a.png").rgb, fixed);
 }
 
+TEST_F(ApiImage, IsExposedByTheRuleOfTheOptions) {
+  const HdrImage image = Gradient();
+  EXPECT_EQ(ExposureValue(image, {.ev100 = 12.0}), 12.0);
+  EXPECT_EQ(ExposureValue(image, {.exposure = "12"}), 12.0);
+  EXPECT_EQ(ExposureValue(image, {.exposure = "incident", .illuminance_lx = 2.5 * 1024.0}), 10.0);
+  HdrImage dusk = image;
+  for (auto& pixel : dusk.rgb)
+    for (float& value : pixel) value *= 1e-3F;
+  EXPECT_GT(ExposureValue(dusk, {.exposure = "eye"}), ExposureValue(dusk));
+  WritePng(folder_ / "a.png", image, {.exposure = "incident", .illuminance_lx = 2.5 * 1024.0});
+  const Metadata header = lut::ReadPngMetadata(folder_ / "a.png");
+  EXPECT_EQ(header.at("alpenglow.ev100"), "10.0000");
+  EXPECT_EQ(header.at("alpenglow.exposure"), "incident");
+  EXPECT_EQ(header.at("alpenglow.utc"), "2026-06-21T04:00:00Z");
+}
+
 TEST_F(ApiImage, WrongImagesOptionsAndFilesAreRefused) {
   HdrImage image = Gradient();
+  EXPECT_THROW((void)ForDisplay(image, {.exposure = "incident"}), InputError);
+  EXPECT_THROW((void)ForDisplay(image, {.exposure = "incident", .illuminance_lx = -1.0}),
+               InputError);
+  EXPECT_THROW((void)ForDisplay(image, {.exposure = "late"}), InputError);
+  EXPECT_THROW((void)ForDisplay(image, {.night_vision = true}), InputError)
+      << "the image has no scotopic luminance";
   EXPECT_THROW((void)ForDisplay(image, {.ev100 = 31.0}), InputError);
   EXPECT_THROW((void)ForDisplay(image, {.ev100 = 1.0, .tone_map = "film"}), InputError);
   EXPECT_THROW((void)ReadExr(folder_ / "none.exr"), InputError);

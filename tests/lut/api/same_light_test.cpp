@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Whoever asks for the light of the sky gets the same: by the library, in panoramas, from tables in
 // files, by `skylut eval`, and from the tables of `skyview`. No program is started, which would
-// solve every air again: `skylut sky` calls lut::RenderPanorama as the library does, and
-// `skyseries` asks for radiances as the library does.
+// solve every air again: `skylut sky` calls RenderPanorama of the library, and `skyseries` asks for
+// radiances as the library does.
 #include <alpenglow/panorama.h>
 #include <alpenglow/sky.h>
 #include <alpenglow/tables.h>
@@ -20,6 +20,7 @@
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "lut/api/conversions.h"
+#include "lut/api/sky_parts.h"
 #include "lut/evaluate/eval.h"
 #include "lut/evaluate/integral_evaluator.h"
 #include "tests/fixtures/sanitized.h"
@@ -95,7 +96,7 @@ Luminances RadianceOf(const Sky& sky, const Setting& at) {
 }
 
 SolvedAir SolvedOf(const Sky& sky) {
-  const TableLookup& lookup = sky.state().lookup;
+  const TableLookup& lookup = SkyParts::LookupOf(sky);
   return {lookup.single_scattering(), RefractedBeam(lookup.medium()), lookup.multiple_scattering()};
 }
 

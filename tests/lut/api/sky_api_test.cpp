@@ -14,6 +14,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "lut/api/conversions.h"
+#include "lut/api/sky_parts.h"
 #include "lut/cli/program.h"
 
 namespace alpenglow {
@@ -109,7 +110,7 @@ TEST(Sky, AerialPerspectiveHasItsStatedErrors) {
       const ViewRay ray = RayTo(object, sun);
       const auto samples =
           air.Sample(ray, {.nodes = 12, .split_ozone = false, .dark_samples = true});
-      const auto more = Earth().state().lookup.multiple_scattering().InscatterAlong(
+      const auto more = SkyParts::LookupOf(Earth()).multiple_scattering().InscatterAlong(
           samples, ray.nu, lut::SegmentEnd::kOpaque);
       const auto once = air.Inscatter(air.Scatter(samples), ray.nu);
       const auto depth = atmosphere::reference::OpticalDepthAlong(medium, ray);

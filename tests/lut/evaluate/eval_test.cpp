@@ -612,12 +612,12 @@ const MultipleScattering& StandardMoments(const Medium& medium) {
   const std::uint64_t hash = MediumHash(medium);
   const auto found = solved.find(hash);
   if (found != solved.end()) return found->second;
-  const TableQuality quality = TableQualityFromName("standard");
+  const TableSizes quality = SizesOf(BakeQuality::kStandard);
   return solved.try_emplace(hash, medium, quality.multiple_scattering).first->second;
 }
 
 std::unique_ptr<Evaluator> StandardTables(const Medium& medium) {
-  const TableQuality quality = TableQualityFromName("standard");
+  const TableSizes quality = SizesOf(BakeQuality::kStandard);
   return MakeTableEvaluator({.medium = medium,
                              .transmittance = TransmittanceTable(medium, quality.transmittance),
                              .single_scattering = ScatteringTable(
@@ -629,7 +629,7 @@ std::unique_ptr<Evaluator> StandardTables(const Medium& medium) {
 // Makes what skylut build --max-error makes of a percent: moments, and rays that are integrated
 // where they are asked for.
 std::unique_ptr<Evaluator> MomentsAlone(const Medium& medium) {
-  const TableQuality quality = TableQualityFromName("standard");
+  const TableSizes quality = SizesOf(BakeQuality::kStandard);
   return MakeTableEvaluator({.medium = medium,
                              .transmittance = {},
                              .single_scattering = {},

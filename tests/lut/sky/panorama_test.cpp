@@ -26,17 +26,17 @@ constexpr double kAzimuths_deg[] = {0.0, 40.0, 200.0, 275.0};
 using tests::Earth;
 using tests::Luminance;
 
-HdrImage Panorama(const PanoramaSettings& settings) {
-  return RenderPanorama(Earth().single_scattering(), Earth().multiple_scattering(), settings);
+HdrImage Panorama(const PanoramaOptions& options) {
+  return RenderPanorama(Earth().single_scattering(), Earth().multiple_scattering(), options);
 }
 
-PanoramaSettings SunAtDegrees(double elevation, double azimuth) {
-  PanoramaSettings settings;
-  settings.width = 256;
-  settings.height = 128;
-  settings.sun.elevation_deg = elevation;
-  settings.sun.azimuth_deg = azimuth;
-  return settings;
+PanoramaOptions SunAtDegrees(double elevation, double azimuth) {
+  PanoramaOptions options;
+  options.width = 256;
+  options.height = 128;
+  options.sun.elevation_deg = elevation;
+  options.sun.azimuth_deg = azimuth;
+  return options;
 }
 
 struct Pixel {
@@ -54,41 +54,40 @@ Pixel Brightest(const HdrImage& image) {
 
 // Returns the horizontal texture coordinate at which each program looks up a direction of its own
 // axes, by the published formulas of these programs.
-double LookedUpAt(PanoramaOrientation orientation, double x, double y, double z) {
+double LookedUpAt(PanoramaCentre centre, double x, double y, double z) {
   const auto turn = [](double angle) { return angle / (2.0 * kPi); };
-  switch (orientation) {
-    case PanoramaOrientation::kNorth:  // x east, y north, z up: the middle is north, right is east
+  switch (centre) {
+    case PanoramaCentre::kNorth:  // x east, y north, z up: the middle is north, right is east
       return 0.5 + turn(std::atan2(x, y));
-    case PanoramaOrientation::kBlender:  // Cycles, direction_to_equirectangular
+    case PanoramaCentre::kBlender:  // Cycles, direction_to_equirectangular
       return 0.5 - turn(std::atan2(y, x));
-    case PanoramaOrientation::kOpenExr:  // ImfEnvmap.h: longitude 0 is +z, 90 degrees +x
+    case PanoramaCentre::kOpenExr:  // ImfEnvmap.h: longitude 0 is +z, 90 degrees +x
       return 0.5 - turn(std::atan2(x, z));
-    case PanoramaOrientation::kThree:  // equirectUv
+    case PanoramaCentre::kThreeJs:  // equirectUv
       return 0.5 + turn(std::atan2(z, x));
-    case PanoramaOrientation::kUnity:  // ToRadialCoords: 0.5 - atan2(z, x) / 2 pi
+    case PanoramaCentre::kUnity:  // ToRadialCoords: 0.5 - atan2(z, x) / 2 pi
       return 0.5 - turn(std::atan2(z, x));
-    case PanoramaOrientation::kGodot:  // sky shader: atan(x, -z)
+    case PanoramaCentre::kGodot:  // sky shader: atan(x, -z)
       return turn(std::atan2(x, -z));
   }
   return -1.0;
 }
 
 // Returns the column of a direction in the axes of a program. East is +x everywhere.
-double ColumnOf(PanoramaOrientation orientation, double elevation_rad, double azimuth_rad,
-                int width) {
+double ColumnOf(PanoramaCentre centre, double elevation_rad, double azimuth_rad, int width) {
   const auto enu = EnuFromAngles(elevation_rad, azimuth_rad).xyz;
   const double east = enu.x, north = enu.y, up = enu.z;
   double u = 0.0;
-  switch (orientation) {
-    case PanoramaOrientation::kNorth:
-    case PanoramaOrientation::kBlender:
-      u = LookedUpAt(orientation, east, north, up);
+  switch (centre) {
+    case PanoramaCentre::kNorth:
+    case PanoramaCentre::kBlender:
+      u = LookedUpAt(centre, east, north, up);
       break;
-    case PanoramaOrientation::kUnity:
-      u = LookedUpAt(orientation, east, up, north);
+    case PanoramaCentre::kUnity:
+      u = LookedUpAt(centre, east, up, north);
       break;
     default:
-      u = LookedUpAt(orientation, east, up, -north);
+      u = LookedUpAt(centre, east, up, -north);
   }
   return (u - std::floor(u)) * width;
 }
@@ -99,24 +98,24 @@ bool ShowsTheSunAt(const HdrImage& image, double column, double row) {
   return std::abs(across) <= 1.0 && std::abs(sun.y + 0.5 - row) <= 1.0;
 }
 
-class Orientation : public testing::TestWithParam<PanoramaOrientation> {};
+class Orientation : public testing::TestWithParam<PanoramaCentre> {};
 
 TEST_P(Orientation, TheProgramFindsTheSunAndNotInAMirror) {
   for (const double azimuth_deg : kAzimuths_deg) {
-    PanoramaSettings settings = SunAtDegrees(35.0, azimuth_deg);
-    settings.orientation = GetParam();
-    settings.sun_disk = true;
-    HdrImage image = Panorama(settings);
-    const double column = ColumnOf(GetParam(), settings.sun.elevation_rad(),
-                                   settings.sun.azimuth_rad(), settings.width);
-    const double row = (90.0 - 35.0) / 180.0 * settings.height;
+    PanoramaOptions options = SunAtDegrees(35.0, azimuth_deg);
+    options.centre = GetParam();
+    options.draws_sun = true;
+    HdrImage image = Panorama(options);
+    const double column =
+        ColumnOf(GetParam(), options.sun.elevation_rad(), options.sun.azimuth_rad(), options.width);
+    const double row = (90.0 - 35.0) / 180.0 * options.height;
     EXPECT_TRUE(ShowsTheSunAt(image, column, row)) << NameOf(GetParam()) << " " << azimuth_deg;
     for (int y = 0; y < image.height; ++y) {
       std::reverse(&image.at(0, y), &image.at(image.width - 1, y) + 1);
     }
-    const double mirrored = settings.width - column;
+    const double mirrored = options.width - column;
     const bool symmetric =
-        std::abs(std::remainder(mirrored - column, static_cast<double>(settings.width))) < 3.0;
+        std::abs(std::remainder(mirrored - column, static_cast<double>(options.width))) < 3.0;
     if (!symmetric) {
       EXPECT_FALSE(ShowsTheSunAt(image, column, row)) << "a mirrored picture must not pass";
     }
@@ -124,16 +123,16 @@ TEST_P(Orientation, TheProgramFindsTheSunAndNotInAMirror) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryProgram, Orientation,
-                         testing::Values(PanoramaOrientation::kNorth, PanoramaOrientation::kBlender,
-                                         PanoramaOrientation::kOpenExr, PanoramaOrientation::kThree,
-                                         PanoramaOrientation::kUnity, PanoramaOrientation::kGodot),
+                         testing::Values(PanoramaCentre::kNorth, PanoramaCentre::kBlender,
+                                         PanoramaCentre::kOpenExr, PanoramaCentre::kThreeJs,
+                                         PanoramaCentre::kUnity, PanoramaCentre::kGodot),
                          [](const auto& tested) { return NameOf(tested.param); });
 
 TEST(Panorama, NamesOfOrientationsAreReadBack) {
   for (const char* name : {"north", "blender", "openexr", "three", "unity", "godot"})
-    EXPECT_EQ(NameOf(PanoramaOrientationFromName(name)), name);
-  EXPECT_EQ(PanoramaOrientationFromName("geographic"), PanoramaOrientation::kNorth);
-  EXPECT_THROW((void)PanoramaOrientationFromName("maya"), InputError);
+    EXPECT_EQ(NameOf(PanoramaCentreFromName(name)), name);
+  EXPECT_EQ(PanoramaCentreFromName("geographic"), PanoramaCentre::kNorth);
+  EXPECT_THROW((void)PanoramaCentreFromName("maya"), InputError);
 }
 
 // Returns the cosine-weighted integral over the pixels of a half of the sphere: illuminance [lx].
@@ -174,20 +173,20 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
   const DirectSky direct(Earth().medium(), Earth().multiple_scattering());
   for (const double altitude_m : {2.0, 10e3, 400e3}) {
     for (const double elevation_deg : {60.0, 10.0, 1.0, -4.0, -10.0}) {
-      PanoramaSettings settings = SunAtDegrees(elevation_deg, 10.0);
-      settings.altitude_m = altitude_m;
-      const HdrImage image = Panorama(settings);
-      const double mu_s = std::sin(settings.sun.elevation_rad());
+      PanoramaOptions options = SunAtDegrees(elevation_deg, 10.0);
+      options.altitude_m = altitude_m;
+      const HdrImage image = Panorama(options);
+      const double mu_s = std::sin(options.sun.elevation_rad());
       double brightest = 0.0;
       for (const auto& pixel : image.rgb) brightest = std::max(brightest, Luminance(pixel));
       double squares = 0.0;
       constexpr int kPixels = tests::ScaledDown(50, 20);
       for (int i = 1; i <= kPixels; ++i) {
-        const int x = static_cast<int>(Halton(i, 2) * settings.width);
-        const int y = static_cast<int>(Halton(i, 3) * settings.height);
-        const double zenith = kPi * (y + 0.5) / settings.height;
+        const int x = static_cast<int>(Halton(i, 2) * options.width);
+        const int y = static_cast<int>(Halton(i, 3) * options.height);
+        const double zenith = kPi * (y + 0.5) / options.height;
         const double from_sun =
-            2.0 * kPi * ((x + 0.5) / settings.width - 0.5) - settings.sun.azimuth_rad();
+            2.0 * kPi * ((x + 0.5) / options.width - 0.5) - options.sun.azimuth_rad();
         const double exact =
             LuminanceOf(direct.Radiance(SkyRay(altitude_m, zenith, mu_s, from_sun)));
         const double error =
@@ -201,12 +200,12 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
 }
 
 TEST(Panorama, LayersOfPolarisationLeaveThePictureAsItIs) {
-  PanoramaSettings settings = SunAtDegrees(10.0, 0.0);
-  settings.width = 64;
-  settings.height = 32;
-  const HdrImage bare = Panorama(settings);
-  settings.layers = {StokesLayer::kPolarisation, StokesLayer::kQ, StokesLayer::kU};
-  const HdrImage image = Panorama(settings);
+  PanoramaOptions options = SunAtDegrees(10.0, 0.0);
+  options.width = 64;
+  options.height = 32;
+  const HdrImage bare = Panorama(options);
+  options.layers = {"polarisation", "stokes_q", "stokes_u"};
+  const HdrImage image = Panorama(options);
   EXPECT_EQ(image.rgb, bare.rgb) << "to the last bit";
   ASSERT_EQ(image.layers.size(), 8U);
   EXPECT_EQ(image.layers[1].name, "polarisation.angle");
@@ -234,12 +233,12 @@ TEST(Panorama, LayersOfPolarisationLeaveThePictureAsItIs) {
 // Hard case 32.
 TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
   for (const auto& [width, height] : {std::pair{16, 8}, std::pair{256, 128}, std::pair{900, 450}}) {
-    PanoramaSettings settings = SunAtDegrees(41.0, 77.0);
-    settings.width = width;
-    settings.height = height;
-    const HdrImage without = Panorama(settings);
-    settings.sun_disk = true;
-    const HdrImage with = Panorama(settings);
+    PanoramaOptions options = SunAtDegrees(41.0, 77.0);
+    options.width = width;
+    options.height = height;
+    const HdrImage without = Panorama(options);
+    options.draws_sun = true;
+    const HdrImage with = Panorama(options);
     double light = 0.0;
     for (int y = 0; y < height; ++y) {
       const double solid_angle =
@@ -255,19 +254,19 @@ TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
 }
 
 TEST(Panorama, ASunBelowTheHorizonHasNoDisk) {
-  PanoramaSettings settings = SunAtDegrees(-2.0, 30.0);
-  const HdrImage without = Panorama(settings);
-  settings.sun_disk = true;
-  EXPECT_EQ(Panorama(settings).rgb, without.rgb);
+  PanoramaOptions options = SunAtDegrees(-2.0, 30.0);
+  const HdrImage without = Panorama(options);
+  options.draws_sun = true;
+  EXPECT_EQ(Panorama(options).rgb, without.rgb);
 }
 
 TEST(Panorama, ItsCompassStandsWhereTheSunsOfTheQuartersStand) {
-  PanoramaSettings settings = SunAtDegrees(5.0, 45.0);
-  settings.width = 720;
-  settings.height = 360;
-  const HdrImage plain = Panorama(settings);
-  settings.compass = true;
-  const HdrImage painted = Panorama(settings);
+  PanoramaOptions options = SunAtDegrees(5.0, 45.0);
+  options.width = 720;
+  options.height = 360;
+  const HdrImage plain = Panorama(options);
+  options.draws_compass = true;
+  const HdrImage painted = Panorama(options);
   // Columns in which ink stands on the horizontal row of a letter's foot or head; azimuth 0 is the
   // middle of the picture, 2 pixels are a degree.
   const auto ink = [&](double azimuth_deg, double across_deg, double up_deg) {
@@ -294,9 +293,9 @@ TEST(Panorama, IsTheSameForAnyNumberOfThreads) {
 
 // Hard case 44.
 TEST(Panorama, OnePixelIsAPicture) {
-  PanoramaSettings settings = SunAtDegrees(30.0, 0.0);
-  settings.width = settings.height = 1;
-  EXPECT_GT(Luminance(Panorama(settings).at(0, 0)), 0.0);
+  PanoramaOptions options = SunAtDegrees(30.0, 0.0);
+  options.width = options.height = 1;
+  EXPECT_GT(Luminance(Panorama(options).at(0, 0)), 0.0);
 }
 
 }  // namespace

@@ -193,8 +193,8 @@ TEST_F(ExchangeFiles, RawFilesAreLittleEndianFromTheFirstRow) {
   const std::vector<ExchangeTexture> textures{Numbered("scattering", 256, 128, 32),
                                               Numbered("transmittance", 256, 64, 1)};
   WriteExchangeTables(textures, air, {.type = {}, .format = TexelFormat::kBin}, folder_);
-  WriteExchangeTables(textures, air,
-                      {.layout = ExchangeLayout::kBruneton, .type = {}, .format = {}}, folder_);
+  WriteExchangeTables(textures, air, {.user = TableUser::kBrunetonDemo, .type = {}, .format = {}},
+                      folder_);
   const Raw bin(folder_ / "scattering.bin", 256, 128, 2);
   EXPECT_EQ(bin.bytes(), 8388608U);
   EXPECT_EQ(bin.At(200, 100, 30), (Rgba{200.0, 100.0, 30.0, 0.5}));
@@ -206,24 +206,22 @@ TEST_F(ExchangeFiles, RawFilesAreLittleEndianFromTheFirstRow) {
 }
 
 TEST_F(ExchangeFiles, WhatNoProgramLoadsIsRefused) {
-  const auto refused = [](ExchangeLayout layout, std::optional<TexelType> type,
+  const auto refused = [](TableUser user, std::optional<TexelType> type,
                           std::optional<TexelFormat> format) {
-    return FaultOf({.layout = layout, .type = type, .format = format}).has_value();
+    return FaultOf({.user = user, .type = type, .format = format}).has_value();
   };
-  EXPECT_TRUE(refused(ExchangeLayout::kTakram, {}, TexelFormat::kDat));
-  EXPECT_TRUE(refused(ExchangeLayout::kTakram, TexelType::kFloat, TexelFormat::kBin));
-  EXPECT_TRUE(refused(ExchangeLayout::kBruneton, {}, TexelFormat::kBin));
-  EXPECT_TRUE(refused(ExchangeLayout::kBruneton, TexelType::kHalf, {}));
-  EXPECT_FALSE(refused(ExchangeLayout::kTakram, TexelType::kFloat, TexelFormat::kExr));
-  EXPECT_FALSE(refused(ExchangeLayout::kBruneton, TexelType::kHalf, TexelFormat::kExr));
+  EXPECT_TRUE(refused(TableUser::kThreeAtmosphere, {}, TexelFormat::kDat));
+  EXPECT_TRUE(refused(TableUser::kThreeAtmosphere, TexelType::kFloat, TexelFormat::kBin));
+  EXPECT_TRUE(refused(TableUser::kBrunetonDemo, {}, TexelFormat::kBin));
+  EXPECT_TRUE(refused(TableUser::kBrunetonDemo, TexelType::kHalf, {}));
+  EXPECT_FALSE(refused(TableUser::kThreeAtmosphere, TexelType::kFloat, TexelFormat::kExr));
+  EXPECT_FALSE(refused(TableUser::kBrunetonDemo, TexelType::kHalf, TexelFormat::kExr));
   EXPECT_THROW(WriteExchangeTables({}, MediumPreset("bruneton2017"),
                                    {.type = {}, .format = TexelFormat::kDat}, folder_),
                InputError);
   EXPECT_THROW(static_cast<void>(TexelTypeFromName("double")), InputError);
   EXPECT_THROW(static_cast<void>(TexelFormatFromName("png")), InputError);
-  EXPECT_THROW(
-      static_cast<void>(MakeExchangeTextures(MediumPreset("earth"), {}, ProgressStyle::kQuiet)),
-      InputError)
+  EXPECT_THROW(static_cast<void>(MakeExchangeTextures(MediumPreset("earth"), {})), InputError)
       << "four bands";
   EXPECT_FALSE(IsTheMediumThatLoadersAssume(MediumPreset("earth")));
 }
@@ -231,15 +229,14 @@ TEST_F(ExchangeFiles, WhatNoProgramLoadsIsRefused) {
 // The constant of the demo is that of its half precision, though its files are float.
 TEST(LowestSun, IsThatOfTheProgramUnlessAnotherIsAskedFor) {
   const double demo = std::cos(102.0 / 180.0 * std::acos(-1.0));
-  const ExchangeOptions bruneton{.layout = ExchangeLayout::kBruneton};
+  const ExportOptions bruneton{.user = TableUser::kBrunetonDemo};
   EXPECT_DOUBLE_EQ(LowestSunOf(bruneton), demo);
-  EXPECT_DOUBLE_EQ(LowestSunOf({.layout = ExchangeLayout::kBruneton, .type = TexelType::kHalf}),
-                   demo);
-  EXPECT_EQ(LowestSunOf({.layout = ExchangeLayout::kBruneton, .lowest_sun_deg = 120.0}), -0.5);
+  EXPECT_DOUBLE_EQ(LowestSunOf({.user = TableUser::kBrunetonDemo, .type = TexelType::kHalf}), demo);
+  EXPECT_EQ(LowestSunOf({.user = TableUser::kBrunetonDemo, .lowest_sun_deg = 120.0}), -0.5);
   EXPECT_EQ(LowestSunOf({}), -0.5) << "takram";
   EXPECT_FALSE(FaultOf({.lowest_sun_deg = 120.0}).has_value());
   EXPECT_TRUE(FaultOf({.lowest_sun_deg = 102.0}).has_value()) << "takram loads no such files";
-  EXPECT_TRUE(FaultOf({.layout = ExchangeLayout::kBruneton, .lowest_sun_deg = 110.0}).has_value());
+  EXPECT_TRUE(FaultOf({.user = TableUser::kBrunetonDemo, .lowest_sun_deg = 110.0}).has_value());
 }
 
 /// Returns air whose molecules depolarise like those of the earth. Loaders multiply by the phase
@@ -252,7 +249,7 @@ Medium DepolarisingAir() {
 
 /// Returns the whole set of takram, which is made once.
 const std::vector<ExchangeTexture>& TakramTextures() {
-  static const auto textures = MakeExchangeTextures(DepolarisingAir(), {}, ProgressStyle::kQuiet);
+  static const auto textures = MakeExchangeTextures(DepolarisingAir(), {});
   return textures;
 }
 
@@ -442,7 +439,7 @@ TEST_F(TakramSet, IsDescribedAndHeldAgainstTexelsOfOurOwn) {
     EXPECT_EQ(ExchangeFolderOf(folder), folder);
     EXPECT_EQ(ExchangeFolderOf(folder / ("irradiance" + SuffixOf(format))), folder);
     const ExchangeDescription description = DescribeExchangeTables(folder);
-    EXPECT_EQ(description.options.layout, ExchangeLayout::kTakram);
+    EXPECT_EQ(description.options.user, TableUser::kThreeAtmosphere);
     EXPECT_EQ(description.options.lowest_sun_deg, 120.0);
     EXPECT_EQ(MediumHash(description.medium), MediumHash(air_));
     EXPECT_FALSE(description.medium_is_assumed);

@@ -301,7 +301,7 @@ CameraPose Towards(double heading, double pitch, double fov) {
 }
 
 HdrImage EclipseRendered(const CameraPose& pose, const UtcTime& instant, int size, int rays,
-                      Moon moon = Moon::kThere) {
+                         Moon moon = Moon::kThere) {
   RenderSettings settings;
   settings.width = settings.height = size;
   settings.samples_per_pixel = rays;
