@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Maps a slope to the table of the open sky's irradiance (sky_on_ground.h): equal steps of the
+// Maps a slope to the table of the open sky's irradiance (sky_irradiance_gradient.h): equal steps of the
 // components of its unit normal towards the sun, -1 to 1, and upwards, 0 to 1. The sky is symmetric
 // about the azimuth of the sun, so these two components are sufficient, and the irradiance is a
 // smooth function of them.

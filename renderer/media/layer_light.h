@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "renderer/illumination/lighting.h"
-#include "renderer/illumination/occluded_sky.h"
+#include "renderer/illumination/sky_moments.h"
 #include "renderer/media/exponential_layer.h"
 
 namespace alpenglow::renderer {

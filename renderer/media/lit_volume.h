@@ -18,7 +18,7 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/illumination/occluded_sky.h"
+#include "renderer/illumination/sky_moments.h"
 #include "renderer/media/lit_medium.h"
 #include "renderer/media/local_volume.h"
 

@@ -1,92 +1,28 @@
 // SPDX-License-Identifier: MIT
 // The data that all pixels of one picture share: camera, distant lights with their shadows and
 // their light on terrain and in media, lamps, night sky, stars and refraction.
-//
-// RefractedViewRays holds the refracted rays of a picture: whether refraction moves anything
-// visible, and where refracted rays meet the ground.
-//
-// LimbView describes the air at the limb of the planet, seen from above. There the light of the sky
-// can change by a factor e within a fraction of a pixel.
 #pragma once
 
-#include <cstddef>
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
 
-#include "atmosphere/refraction/refracted_view.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effects/effects.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/night_light.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/media/media_light.h"
+#include "renderer/picture/limb_view.h"
 #include "renderer/picture/prepared_scene.h"
+#include "renderer/picture/refracted_view_rays.h"
 #include "renderer/picture/render.h"
-#include "renderer/picture/sky_pixels.h"
+#include "renderer/picture/scene_lighting.h"
+#include "renderer/picture/small_disk.h"
+#include "renderer/picture/star_pixels.h"
 #include "renderer/surface/scene_geometry.h"
+#include "renderer/surface/terrain_sunlight.h"
 
 namespace alpenglow::renderer {
-
-class FrameContext;
-
-/// Straight rays past the planet and down to it, from one eye. Immutable.
-class LimbView {
- public:
-  LimbView(const SceneGeometry& geometry, const Medium& medium, const CameraRays& camera,
-           const PixelFilter& filter);
-
-  [[nodiscard]] const glm::dvec3& up() const { return up_; }
-  [[nodiscard]] double radius_m() const { return radius_m_; }
-  [[nodiscard]] double altitude_m() const { return altitude_m_; }
-  /// Returns the air that bends rays.
-  [[nodiscard]] const BendingAir& bending_air() const { return bending_air_; }
-
-  /// Returns whether the density of the air at the lowest point ahead changes by more than 15 %
-  /// within a pixel. There the light of the sky differs within a pixel, and pixels are sampled;
-  /// elsewhere the sky in the middle of a pixel stands for the whole.
-  [[nodiscard]] bool IsSteepAt(const glm::dvec3& direction) const;
-  /// Returns the cosine between the vertical and a ray where it meets the planet; 0 if it does not.
-  /// @param mu  sine of the ray's elevation at the eye.
-  [[nodiscard]] double GroundCosine(double mu) const;
-  [[nodiscard]] double GroundCosine(const glm::dvec3& direction) const {
-    return GroundCosine(glm::dot(direction, up_));
-  }
-
- private:
-  glm::dvec3 up_;
-  BendingAir bending_air_;
-  double radius_m_, altitude_m_, top_m_;
-  double pixel_rad_, filter_rad_;  // width of a pixel; radius of its filter
-  double molecules_m_, haze_m_;    // scale heights
-  double hazy_below_m_;            // altitude below which haze matters
-};
-
-/// Effect of refraction on the sun, on terrain and on the horizon of a sea without terrain.
-struct RefractedViewRays {
-  RefractedView view;
-  glm::dvec3 up;               // at the eye, unit
-  glm::dvec3 to_sun, to_moon;  // unit, without refraction
-  bool moves_ground = false;  // moves the farthest terrain or the horizon by more than half a pixel
-  std::shared_ptr<const RefractedFan> fan =
-      nullptr;  // rays to terrain; null: terrain does not move
-
-  [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;
-  /// Returns the direction, unit, from which light of a band arrives that is seen in `direction`.
-  [[nodiscard]] glm::dvec3 TrueDirection(const glm::dvec3& direction, std::size_t band) const;
-};
-
-/// Returns the refraction if it moves something in the picture by more than half a pixel; else
-/// null.
-[[nodiscard]] std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(
-    const FrameContext& frame, const Observer& observer);
-
-/// Returns the hit of a bent ray, for a frame with RefractedViewRays. Terrain appears within 0.1'
-/// of the solution of the ray equation.
-/// @param expected_m  expected length of the ray; 0: unknown.
-[[nodiscard]] Hit OnRefractedRay(const FrameContext& frame, const CameraRay& ray,
-                                 double expected_m);
 
 /// A distant light of a picture, with its shadows and its light in media.
 struct FrameLight {

@@ -2,8 +2,6 @@
 // The scene behind SceneRenderer, prepared once for all pictures: ground, air, lamps, media; and
 // the cache of sunlight or moonlight in the air over one ground, which all pictures of a moment
 // share.
-//
-// The light of a scene seen by an observer: sun, moon and night sky, and their illuminance.
 #pragma once
 
 #include <deque>
@@ -30,6 +28,7 @@
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
+#include "renderer/surface/terrain_sunlight.h"
 
 namespace alpenglow::renderer {
 
@@ -165,27 +164,5 @@ class PreparedScene {
   mutable std::mutex patterns_mutex_;
   mutable std::vector<std::unique_ptr<PreparedScene>> other_patterns_;
 };
-
-/// The eye of a picture, and sun and moon at its instant.
-struct Observer {
-  FrameTransform from_eye;  // to the frame of the scene
-  SkyBodies bodies;         // from the place of the eye
-};
-
-/// Returns the observer of the middle pose, or the scene's own. Takes sun and moon from the shot if
-/// it has them. Throws InputError as FromEyeAt does.
-[[nodiscard]] Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sample);
-
-/// Returns the light of sun, moon and night sky, each if it may be visible, in the scene's frame.
-[[nodiscard]] Lighting LightingAt(const PreparedScene& scene, const Observer& observer);
-
-/// Returns the illuminance of one light and its sky on a level plane at a point, without terrain
-/// [lux].
-[[nodiscard]] double IlluminanceBy(const PreparedScene& scene, const DistantLight& source,
-                                   const glm::dvec3& eye, const Lighting& light);
-/// Returns the illuminance of all distant lights and the sky on a level plane at a point, without
-/// terrain [lux].
-[[nodiscard]] double Illuminance(const PreparedScene& scene, const glm::dvec3& eye,
-                                 const Lighting& light);
 
 }  // namespace alpenglow::renderer

@@ -19,7 +19,7 @@
 #include "renderer/picture/pixel_light.h"
 #include "renderer/picture/pixel_shader.h"
 #include "renderer/picture/prepared_scene.h"
-#include "renderer/picture/sky_pixels.h"
+#include "renderer/picture/unoccluded_sky_pixels.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -3,9 +3,9 @@
 // pixels.
 //
 // Every pixel first takes two rays; pixels well above the skyline take one, which gives the same
-// result (sky_pixels.h). Two first rays are enough where the eight neighbours would not require
-// more even if all differences between their rays were noise, edges and gradients included: such
-// pixels hide nothing (skies, haze, still water). Other pixels take more first rays before the
+// result (unoccluded_sky_pixels.h). Two first rays are enough where the eight neighbours would not
+// require more even if all differences between their rays were noise, edges and gradients included:
+// such pixels hide nothing (skies, haze, still water). Other pixels take more first rays before the
 // noise is estimated. The number of rays that follow is decided once, from the first rays:
 //
 //   s^2 = sum |c_i - m|^2 / (n - 1) / max(|m|, floor)^2     of the first n rays of a pixel, c in

@@ -23,9 +23,10 @@
 #include <vector>
 
 #include "lut/camera_tables/air_tables.h"
+#include "renderer/illumination/gloss_mirror.h"
 #include "renderer/illumination/lighting.h"
-#include "renderer/illumination/sky_on_ground.h"
-#include "renderer/picture/lit_ground.h"
+#include "renderer/illumination/sky_irradiance_gradient.h"
+#include "renderer/picture/ground_follower.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/colour_drape.h"
 #include "renderer/surface/ground_pattern.h"

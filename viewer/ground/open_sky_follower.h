@@ -14,7 +14,7 @@
 #include "atmosphere/base/async_value.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/camera_tables/air_tables.h"
-#include "renderer/illumination/sky_on_ground.h"
+#include "renderer/illumination/sky_irradiance_gradient.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

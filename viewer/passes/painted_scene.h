@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
-#include "renderer/illumination/sky_on_ground.h"
-#include "renderer/picture/lit_ground.h"
+#include "renderer/illumination/sky_irradiance_gradient.h"
+#include "renderer/picture/ground_follower.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"

@@ -9,7 +9,7 @@
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/picture/sky_pixels.h"
+#include "renderer/picture/star_pixels.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/passes/picture_programs.h"
 #include "viewer/shaders/pass_setup.h"

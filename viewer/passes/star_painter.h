@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stars and planets of a view, drawn over the picture as small squares of pixels.
 //
-// They are points, as in the renderer (night_light.h, sky_pixels.h). Their illuminance does not
+// They are points, as in the renderer (night_light.h, star_pixels.h). Their illuminance does not
 // depend on the size of the picture: each is spread over pixels with the renderer's StarBell. They
 // are seen through the air and are hidden by land and moon. Their list is made on a worker thread
 // and rotates with the sky until the next list. By day there is none.

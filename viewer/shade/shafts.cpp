@@ -11,7 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/time_place/geodesy.h"
-#include "renderer/visibility/shade_map.h"
+#include "renderer/visibility/heights_around.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/pass_setup.h"

@@ -39,7 +39,7 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/illumination/distant_light.h"
 #include "renderer/terrain/loaded_heights.h"
-#include "renderer/visibility/shade_map.h"
+#include "renderer/visibility/sun_shadow_map.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"

@@ -13,7 +13,7 @@
 #include "atmosphere/lamp/airlight.h"
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
-#include "renderer/illumination/occluded_sky.h"
+#include "renderer/illumination/sky_moments.h"
 #include "renderer/media/layer_light.h"
 #include "renderer/media/local_volume.h"
 #include "renderer/picture/render.h"

@@ -11,7 +11,7 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/numerics.h"
-#include "renderer/illumination/sky_on_ground.h"
+#include "renderer/illumination/sky_irradiance_gradient.h"
 #include "tests/renderer/picture/rough_site.h"
 
 namespace alpenglow::renderer {

@@ -14,7 +14,7 @@
 #include "renderer/elevation/mesh.h"
 #include "renderer/layer.h"
 #include "renderer/picture/render.h"
-#include "renderer/picture/sky_pixels.h"
+#include "renderer/picture/skyline.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/visibility/shade_map.h"
+#include "renderer/visibility/heights_around.h"
+#include "renderer/visibility/sun_shadow_map.h"
 
 #include <gtest/gtest.h>
 

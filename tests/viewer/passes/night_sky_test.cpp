@@ -14,7 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/illumination/night_light.h"
-#include "renderer/picture/sky_pixels.h"
+#include "renderer/picture/star_pixels.h"
 #include "tests/fixtures/bare_scene.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/passes/night_sky_map.h"

@@ -32,11 +32,11 @@ layout(std140) uniform GroundSurface {
   vec4 mirror_place;
 };
 
-uniform sampler2DArray gloss_mirror;  // GlossMirror of sky_on_ground.h: waves, then land
+uniform sampler2DArray gloss_mirror;  // GlossMirror of gloss_mirror.h: waves, then land
 #ifdef TWO_LIGHTS
 uniform sampler2DArray other_gloss_mirror;  // of the second light
 #endif
-uniform sampler2D level_sky;          // LevelSky of sky_on_ground.h
+uniform sampler2D level_sky;          // LevelSky of gloss_mirror.h
 #if HAS_DRAPE
 uniform sampler2D drape;  // linear sRGB, or fractions of land cover; fourth: 1 inside the picture
 #endif

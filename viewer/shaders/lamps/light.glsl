@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of lamps: LampsBlock of scene_lamps.h. Frame: east, north, up at the eye, which is the
+// Light of lamps: LampsBlock of lamps_block.h. Frame: east, north, up at the eye, which is the
 // origin. Lengths are in metres. One band per component.
 //
 // Scattered light in the air, with the scattering angle a, the point t_c of the ray nearest to the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Single scattering that terrain shadows remove from a ray, by marching through a SunShadowMap
-// (renderer/visibility/shade_map.h).
+// (renderer/visibility/sun_shadow_map.h).
 //
 // Requires vec4 SingleTo(vec3 direction, float distance_km): single scattering of sunlight up to a
 // distance in unshadowed air. Defined before this text: LEFT_BY_MEDIA(direction, distance_km), the

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Height of terrain shadows in the air, which shaders need to find the shadowed stretches of a ray.
 //
-// HeightsAround resamples heights from latitude and longitude to an even grid of a local frame.
 // SunShadowMap is a faster version of ShadowHeights (renderer/visibility/shadow_heights.h) for the
 // GPU. Over the plane of u, the distance towards the sun, and v, across it, the height of the
 // shadow for a beam is
@@ -16,26 +15,15 @@
 // places take some 20 ms on one thread.
 #pragma once
 
+#include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "atmosphere/time_place/geodesy.h"
-#include "renderer/elevation/elevation.h"
 #include "renderer/elevation/mesh.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
-
-/// Returns the ground within `half_m` east, west, north and south of the frame's origin, as side x
-/// side nodes with z in the frame, which includes the curvature of the planet.
-/// HeightRaster::kNothing where the grid has no height. Samples are joined to triangles as in
-/// MeshFromElevation. The positions of nodes are computed exactly for every sixteenth node and
-/// linearly in between, accurate to a hundredth of a cell at 50 km below 80 degrees of latitude.
-/// Twice as many nodes as samples preserve crests that run between nodes. Uses one thread.
-/// @param side  at least 2.
-[[nodiscard]] HeightRaster HeightsAround(const ElevationGrid& grid, const LocalFrame& frame,
-                                         double half_m, int side);
 
 /// Heights of the shadow of terrain for one direction of the sun. Immutable once made. Lengths in
 /// metres, in the frame of the heights, z up.
