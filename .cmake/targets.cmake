@@ -327,7 +327,7 @@ set(ALPENGLOW_TEST_ENVIRONMENT
   ALPENGLOW_CACHE=${ALPENGLOW_TEST_CACHE} MESA_SHADER_CACHE_DIR=${ALPENGLOW_TEST_CACHE} GALLIVM_PERF=nopt)
 # Memory comes in pages of 2 MB where the kernel has them, and freed memory stays in the process: glibc returns
 # each large block to the kernel, and the next one costs a page fault every 4 kB. viewer_tests
-# --gtest_filter='LandPictures.With*:DisplayPass*' takes 10.6 s of processor time instead of 12.5 s. The sanitizers
+# --gtest_filter='LandPictures.Keep*:DisplayPass*' takes 10.6 s of processor time instead of 12.5 s. The sanitizers
 # have an allocator of their own.
 if(NOT CMAKE_BUILD_TYPE STREQUAL "Sanitize")
   string(JOIN ":" kept_memory glibc.malloc.hugetlb=1 glibc.malloc.mmap_max=0

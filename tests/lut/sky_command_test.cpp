@@ -28,7 +28,7 @@ class SkylutSky : public TemporaryFolder {
   }
 };
 
-TEST_F(SkylutSky, AWrongCommandLineIsStatus2) {
+TEST_F(SkylutSky, AWrongCommandLineExitsWith2) {
   for (const char* arguments :
        {"", "--out a.hdr --sun-elevation 10", "--out - --sun-elevation 10",
         "--out a.exr --png a.jpg --sun-elevation 10", "--out a.exr", "--sun-elevation 10",
@@ -47,7 +47,7 @@ TEST_F(SkylutSky, AWrongCommandLineIsStatus2) {
   EXPECT_EQ(FileCount(), 0U);
 }
 
-TEST_F(SkylutSky, AWrongInputIsStatus3AndNamedInOneLine) {
+TEST_F(SkylutSky, AWrongInputExitsWith3AndOneLine) {
   const Outcome time = Run("--out a.exr --latitude 46 --longitude 8 --time 2024-02-30T00:00:00Z");
   EXPECT_EQ(time.status, 3);
   EXPECT_THAT(time.error, HasSubstr("2024-02-30"));
@@ -56,7 +56,7 @@ TEST_F(SkylutSky, AWrongInputIsStatus3AndNamedInOneLine) {
   EXPECT_EQ(FileCount(), 0U);
 }
 
-TEST_F(SkylutSky, AFolderThatIsMissingIsMade) {
+TEST_F(SkylutSky, AMissingFolderIsMade) {
   const Outcome outcome =
       Run("--size 8x4 --sun-elevation 10 --out new/deep/a.exr --png other/a.png --quiet");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
@@ -72,7 +72,7 @@ TEST_F(SkylutSky, TwoOutputsOfOneNameAreRefused) {
   EXPECT_EQ(FileCount(), 1U) << "only the link";
 }
 
-TEST_F(SkylutSky, AFolderThatCannotBeMadeIsStatus4) {
+TEST_F(SkylutSky, AnImpossibleFolderExitsWith4) {
   WriteText(folder_ / "no", "in the way");
   for (const char* outputs : {"--out no/where/a.exr", "--out a.exr --png no/where/a.png"}) {
     const Outcome outcome =
@@ -93,7 +93,7 @@ TEST_F(SkylutSky, TheAtmosphereIsNeverOverwritten) {
   EXPECT_EQ(ContentOf(folder_ / "air.exr"), "preset = \"earth\"\n");
 }
 
-TEST_F(SkylutSky, WritesALatitudeLongitudePictureThatSaysWhatMadeIt) {
+TEST_F(SkylutSky, WritesALatLongPictureThatNamesItsProgram) {
   const Outcome outcome =
       Run("--quiet --size 64x32 --out a.exr --png a.png --sun-elevation 10 --sun-azimuth 30 "
           "--altitude 1000 --orient blender --tone-map aces");
@@ -125,7 +125,7 @@ TEST_F(SkylutSky, WritesALatitudeLongitudePictureThatSaysWhatMadeIt) {
   EXPECT_EQ(ReadPng(folder_ / "a.png").width, 64);
 }
 
-TEST_F(SkylutSky, SunlitGroundIsExposedFromSpaceAsFromTheGround) {
+TEST_F(SkylutSky, SunlitGroundHasOneExposureFromSpaceAndGround) {
   const auto ev100 = [&](const std::string& altitude) {
     const Outcome outcome =
         Run("--quiet --size 32x16 --out a.exr --png a.png --sun-elevation 50 --sun-disk "
@@ -161,7 +161,7 @@ TEST_F(SkylutSky, APlaceAndATimeGiveTheSunThere) {
   EXPECT_EQ(ContentOf(folder_ / "a.exr"), ContentOf(folder_ / "b.exr")) << "the same instant";
 }
 
-TEST_F(SkylutSky, LayersOfPolarisationAreChannelsOfTheFileAndProgressIsJsonLines) {
+TEST_F(SkylutSky, WritesPolarisationChannelsAndJsonProgress) {
   const Outcome outcome =
       Run("--progress json --size 16x8 --out a.exr --sun-elevation 10 --aov "
           "polarisation,stokes_q,stokes_q");

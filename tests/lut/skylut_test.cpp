@@ -67,7 +67,7 @@ std::vector<double> ValuesOf(const fs::path& results) {
   return values;
 }
 
-TEST_F(Skylut, APresetStandsWhereAnAtmosphereFileMay) {
+TEST_F(Skylut, APresetMayReplaceAnAtmosphereFile) {
   WriteCases();
   const std::string eval = "eval --cases cases.csv --method integral --quiet --atmosphere ";
   ASSERT_EQ(Run(eval + "hazy --out hazy.csv").status, 0);
@@ -81,14 +81,14 @@ TEST_F(Skylut, APresetStandsWhereAnAtmosphereFileMay) {
   EXPECT_THAT(Run(eval + "vacuum-of-space --out r.csv").error, HasSubstr("presets are earth, "));
 }
 
-TEST_F(Skylut, WordsThatAreUnknownNameTheNearest) {
+TEST_F(Skylut, UnknownWordsNameTheNearestKnown) {
   EXPECT_THAT(Run("help").error, HasSubstr("unknown command help; did you mean --help?"));
   EXPECT_THAT(Run("bild --out t").error, HasSubstr("unknown command bild; did you mean build?"));
   EXPECT_THAT(Run("build -o t").error, HasSubstr("unknown option -o; did you mean --out?"));
   EXPECT_EQ(Run("build -o t").status, 2);
 }
 
-TEST_F(Skylut, AWrongCommandLineIsStatus2) {
+TEST_F(Skylut, AWrongCommandLineExitsWith2) {
   for (const char* arguments :
        {"",
         "frobnicate",
@@ -128,7 +128,7 @@ TEST_F(Skylut, AWrongCommandLineIsStatus2) {
   }
 }
 
-TEST_F(Skylut, HelpAndVersionAreStatus0) {
+TEST_F(Skylut, HelpAndVersionExitWith0) {
   EXPECT_THAT(Run("--version").out, testing::StartsWith("skylut of alpenglow "));
   for (const char* command : {"", "build ", "info ", "eval ", "report "}) {
     const Outcome help = Run(std::string(command) + "--help");
@@ -170,7 +170,7 @@ TEST_F(Skylut, BuiltTablesAreDescribedAndEvaluated) {
   }
 }
 
-TEST_F(Skylut, TablesGiveLightOfAllOrdersUnlessTheyWereLeftOut) {
+TEST_F(Skylut, TablesGiveLightOfAllOrdersUnlessOmitted) {
   WriteText(folder_ / "air.toml", "preset = \"bruneton2017\"\n");
   WriteText(folder_ / "cases.csv",
             "id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,"
@@ -202,7 +202,7 @@ TEST_F(Skylut, TablesGiveLightOfAllOrdersUnlessTheyWereLeftOut) {
   EXPECT_THAT(refused.error, HasSubstr("cases.csv:2"));
 }
 
-TEST_F(Skylut, TablesOfAWantedErrorSayWhatWasChosenAndMeasured) {
+TEST_F(Skylut, TablesForAnErrorReportChoiceAndMeasurement) {
   // One band of scalar light is enough. Under the sanitizers, where it takes half a minute, the
   // planet has no air.
   const std::string no_air =
@@ -223,13 +223,13 @@ TEST_F(Skylut, TablesOfAWantedErrorSayWhatWasChosenAndMeasured) {
       << "what has no table is integrated";
 }
 
-TEST_F(Skylut, WithoutAnAtmosphereFileTheEarthIsTaken) {
+TEST_F(Skylut, UsesTheEarthWithoutAnAtmosphereFile) {
   WriteCases();
   ASSERT_EQ(Run("eval --cases cases.csv --out r.csv --method integral --quiet").status, 0);
   EXPECT_THAT(ContentOf(folder_ / "r.csv"), HasSubstr("\nt,445,")) << "four bands";
 }
 
-TEST_F(Skylut, WrongInputsAreStatus3WithOneLineAndNoOutput) {
+TEST_F(Skylut, WrongInputsExitWith3AndOneLine) {
   WriteCoarseTables("tables");
   WriteCases();
   WriteText(folder_ / "bad.csv", "id,quantity\n");
@@ -264,7 +264,7 @@ TEST_F(Skylut, WrongInputsAreStatus3WithOneLineAndNoOutput) {
 }
 
 // Hard case 46.
-TEST_F(Skylut, OutputsThatCannotBeWrittenAreStatus4) {
+TEST_F(Skylut, UnwritableOutputsExitWith4) {
   WriteCases();
   const Outcome build = Run("build --out cases.csv/tables --quality preview --quiet");
   EXPECT_EQ(build.status, 4) << build.error;
@@ -275,7 +275,7 @@ TEST_F(Skylut, OutputsThatCannotBeWrittenAreStatus4) {
   EXPECT_THAT(eval.error, HasSubstr("cases.csv"));
 }
 
-TEST_F(Skylut, ASetForAnotherProgramThatIsNotWholeIsRefusedByName) {
+TEST_F(Skylut, IncompleteSetsForOtherProgramsAreRefused) {
   fs::create_directory(folder_ / "set");
   WriteText(folder_ / "set" / "scattering.dat", "short");
   for (const char* arguments : {"info set", "info set/scattering.dat"}) {
@@ -285,7 +285,7 @@ TEST_F(Skylut, ASetForAnotherProgramThatIsNotWholeIsRefusedByName) {
   }
 }
 
-TEST_F(Skylut, LostMessagesLoseNoResultAndGoIntoNoFile) {
+TEST_F(Skylut, LostMessagesLoseNoResult) {
   WriteCases();
   const std::vector<std::string> eval{
       tests::kSkylut, "eval",  "--cases", (folder_ / "cases.csv").string(), "--method", "integral",
@@ -305,7 +305,7 @@ TEST_F(Skylut, LostMessagesLoseNoResultAndGoIntoNoFile) {
   }
 }
 
-TEST_F(Skylut, ResultsThatNobodyTakesAreStatus4) {
+TEST_F(Skylut, UnreadResultsExitWith4) {
   WriteCoarseTables("tables");
   for (const char* command : {"info tables", "--version", "info --help"}) {
     const std::string run = std::string("'") + tests::kSkylut + "' " + command;
@@ -336,7 +336,7 @@ TEST_F(Skylut, AnInputIsNeverOverwritten) {
 }
 
 // Hard case 45.
-TEST_F(Skylut, AnInterruptLeavesNothingHalfWritten) {
+TEST_F(Skylut, AnInterruptLeavesNoPartialFile) {
   // The build is interrupted when its first line of progress is out, whenever that is.
   const std::string script = "cd '" + folder_.string() + "' && rm -f fifo && mkfifo fifo && { '" +
                              tests::kSkylut +
@@ -366,7 +366,7 @@ TEST_F(Skylut, AnInterruptLeavesNothingHalfWritten) {
   EXPECT_EQ(files, 1U) << "no temporary stays";
 }
 
-TEST_F(Skylut, WavelengthsThatACommandDoesNotTakeAreRefusedWithFileAndLine) {
+TEST_F(Skylut, UnsupportedWavelengthsAreRefusedWithFileAndLine) {
   std::string fine = "[spectrum]\nwavelengths_nm = [380";
   for (int wavelength_nm = 390; wavelength_nm <= 800; wavelength_nm += 10)
     fine += ", " + std::to_string(wavelength_nm);
@@ -392,7 +392,7 @@ TEST_F(Skylut, WavelengthsThatACommandDoesNotTakeAreRefusedWithFileAndLine) {
 }
 
 // Hard case 2.
-TEST_F(Skylut, SegmentsBelowTheSeaHaveTheirAirByEveryMethod) {
+TEST_F(Skylut, EveryMethodHasAirBelowTheSea) {
   WriteText(
       folder_ / "below.csv",
       "id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m\n"

@@ -357,7 +357,7 @@ TEST_F(Skyseries, TwoOutputsOfOneNameAreRefused) {
 }
 
 // A signal between two days, and a reader who has seen enough.
-TEST_F(Skyseries, TimesStopAtASignalAndWhenNobodyReadsThem) {
+TEST_F(Skyseries, TimesStopAtASignalOrABrokenPipe) {
   const std::string times = std::string("'") + tests::kSkyseries +
                             "' times --latitude 46.5 --longitude 8 --date 2026-01-01 --days 3660";
   const Outcome signalled =

@@ -66,7 +66,7 @@ double OverTheGround_m(FlightSession& flight) {
   return flight.eye().place.height_m - flight.edits().GroundAt(flight.eye().place);
 }
 
-TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown) {
+TEST_F(FlightsOverLand, HeightAboveGroundIsKeptUntilTheGroundIsLoaded) {
   constexpr int kFar = 6000;  // samples; 190 km, whose land is not loaded before the eye is there
   tests::WriteQuickTile(folder_ / "far.tif", kFar, 0);
   const Scene scene = SceneAt({300.0, true});
@@ -86,7 +86,7 @@ TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown)
   EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6);
 }
 
-TEST_F(FlightsOverLand, WhereThereIsNoLandTheGroundIsKnownAtOnce) {
+TEST_F(FlightsOverLand, GroundIsKnownAtOnceWithoutLand) {
   for (const double latitude_deg : {10.0, 46.0}) {
     FlightSession flight = SmallFlight(SceneAt({300.0, true}));
     flight.standpoint().MoveTo({latitude_deg, {}, {}, {}, {}});
@@ -96,7 +96,7 @@ TEST_F(FlightsOverLand, WhereThereIsNoLandTheGroundIsKnownAtOnce) {
   }
 }
 
-TEST_F(FlightsOverLand, OfAPlaceWithoutTerrainThereIsANote) {
+TEST_F(FlightsOverLand, APlaceWithoutTerrainIsNoted) {
   FlightSession flight = SmallFlight(SceneAt({300.0, true}));
   static_cast<void>(flight.edits().PollNotes());
   flight.standpoint().GoTo("LSZS");
@@ -137,7 +137,7 @@ double Greenest(const HdrImage& image) {
   return most;
 }
 
-TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
+TEST_F(FlightsOverLand, ShowSkyFirstThenLandWithoutMovingTheEye) {
   constexpr double kSky = 1.35;
   const Scene scene = SceneAt({300.0, true});
   FlightSession flight(scene, ParseInstant("2026-06-21T11:30:00Z"), SettingsFor(scene));
@@ -157,7 +157,7 @@ TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
   EXPECT_GT(Greenest(window.Next()), kSky) << "land";
 }
 
-TEST_F(FlightsOverLand, AfterAJumpInTimeTheFirstFrameIsExposedForItsLight) {
+TEST_F(FlightsOverLand, FirstFrameAfterATimeJumpHasTheNewExposure) {
   FlightSession flight = SmallFlight(SceneAt({300.0, true}));
   flight.WaitUntilReady(kSmall);
   ShownFrames window(flight);
@@ -188,7 +188,7 @@ class FlightsOverTheRange : public FlightsOverLand {
   }
 };
 
-TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
+TEST_F(FlightsOverTheRange, RangeMovesToAPlaceFarOffAndBack) {
   FlightSession flight = SmallFlight(RangeScene());
   flight.standpoint().GoTo("Tromso");
   const Place tromso = PlaceNamed("Tromso").place;
@@ -203,7 +203,7 @@ TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
   EXPECT_EQ(flight.edits().scene().terrain.centre, RangeScene().terrain.centre);
 }
 
-TEST_F(FlightsOverTheRange, AnEyeStandsAtItsHeightBeforeTheRangeIsThere) {
+TEST_F(FlightsOverTheRange, EyeHasItsHeightBeforeTheRangeIsLoaded) {
   FlightSession flight = SmallFlight(RangeScene());
   flight.standpoint().AwaitGround();
   EXPECT_FALSE(flight.standpoint().KnowsGround()) << "nothing was waited for";
@@ -215,7 +215,7 @@ TEST_F(FlightsOverTheRange, AnEyeStandsAtItsHeightBeforeTheRangeIsThere) {
 }
 
 // Land that has grown since, or that of another model.
-TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
+TEST_F(FlightsOverLand, ReplayBelowTheLandStaysAboveIt) {
   const Place place = tests::PlaceOfSample(120.0, 200.0, 100.0);
   const CameraPath low({{0.0, {place}}, {1.0, {place, 0.5}}});
   {
@@ -251,7 +251,7 @@ double Difference(const std::array<float, 3>& a, const std::array<float, 3>& b) 
   return most;
 }
 
-TEST_F(FlightsOverLand, PicturesInPartsArePicturesInOnePieceAndExposedAsAWhole) {
+TEST_F(FlightsOverLand, TiledPicturesEqualWholePicturesInExposureAndPixels) {
   constexpr ImageSize kSize{560, 300};
   constexpr int kPart = 480;
   ASSERT_GE(TiledPicture(kSize.width, kSize.height, kPart).tiles().size(), 6U);
@@ -296,7 +296,7 @@ class PictureQueueTest : public FlightsOverLand {
 };
 
 // The flight goes to another place, time, air and exposure as soon as the picture is asked for.
-TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
+TEST_F(PictureQueueTest, PictureShowsTheMomentOfItsRequest) {
   const Scene scene = Mountains();
   const FlightSessionSettings settings = SettingsFor(scene);
   const RenderTarget screen(kSmall.width, kSmall.height, RenderTarget::Depth::kNone);
@@ -335,7 +335,7 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
   }
 }
 
-TEST_F(PictureQueueTest, FramesAreDrawnBetweenThePartsOfAPicture) {
+TEST_F(PictureQueueTest, FramesAreDrawnBetweenTilesOfAPicture) {
   const Scene scene = Mountains();
   const FlightSessionSettings settings = SettingsFor(scene);
   PictureQueue queue(scene, settings);
@@ -359,7 +359,7 @@ TEST_F(PictureQueueTest, FramesAreDrawnBetweenThePartsOfAPicture) {
   EXPECT_TRUE(std::filesystem::exists(File("picture.png")));
 }
 
-TEST_F(PictureQueueTest, AFolderThatIsGoneIsToldAndTheNextPictureIsWritten) {
+TEST_F(PictureQueueTest, AMissingFolderIsReportedAndTheNextPictureWritten) {
   const Scene scene = BarePlanetScene();
   const FlightSessionSettings settings = SettingsFor(scene);
   PictureQueue queue(scene, settings);
@@ -373,7 +373,7 @@ TEST_F(PictureQueueTest, AFolderThatIsGoneIsToldAndTheNextPictureIsWritten) {
   EXPECT_TRUE(std::filesystem::exists(File("picture.png")));
 }
 
-TEST_F(PictureQueueTest, AQueueThatGoesHasWrittenWhatWasAskedFor) {
+TEST_F(PictureQueueTest, DestructorWritesAllRequestedPictures) {
   const Scene scene = BarePlanetScene();
   const FlightSessionSettings settings = SettingsFor(scene);
   FlightSession flight(scene, Evening(), settings);
@@ -384,7 +384,7 @@ TEST_F(PictureQueueTest, AQueueThatGoesHasWrittenWhatWasAskedFor) {
   EXPECT_EQ(ReadPng(File("picture.png")).width, kSmall.width);
 }
 
-TEST_F(PictureQueueTest, WithoutAWindowPicturesWithInstrumentsAreNotWritten) {
+TEST_F(PictureQueueTest, PicturesWithInstrumentsNeedAWindow) {
   const Scene scene = BarePlanetScene();
   const FlightSessionSettings settings = SettingsFor(scene);
   FlightSession flight(scene, Evening(), settings);
@@ -404,7 +404,7 @@ TEST_F(PictureQueueTest, WithoutAWindowPicturesWithInstrumentsAreNotWritten) {
 
 class NumberedNames : public TemporaryFolder {};
 
-TEST_F(NumberedNames, ANumberIsFreeWhenNeitherPictureHasIt) {
+TEST_F(NumberedNames, NumberIsFreeIfNeitherFileExists) {
   EXPECT_EQ(NextScreenshot(folder_), folder_ / "skyview-0001");
   WriteText(folder_ / "skyview-0001.exr", "");
   EXPECT_EQ(NextScreenshot(folder_), folder_ / "skyview-0002");
@@ -413,7 +413,7 @@ TEST_F(NumberedNames, ANumberIsFreeWhenNeitherPictureHasIt) {
   EXPECT_EQ(NextScreenshot(folder_), folder_ / "skyview-0003");
 }
 
-TEST_F(NumberedNames, AFlightThatIsBeingRecordedHasItsNumber) {
+TEST_F(NumberedNames, RecordingFlightKeepsItsNumber) {
   EXPECT_EQ(NextFlight(folder_), folder_ / "flight-0001.csv");
   WriteText(folder_ / "flight-0001.csv.part", "");
   EXPECT_EQ(NextFlight(folder_), folder_ / "flight-0002.csv");
@@ -423,7 +423,7 @@ TEST_F(NumberedNames, AFlightThatIsBeingRecordedHasItsNumber) {
 
 // --- times of frames ---
 
-TEST(FrameTimes, TheFlightIsSteadyLevelAndTimeRunsSixtyfold) {
+TEST(FrameTimes, BenchmarkFlightIsSteadyAndTimeRunsSixtyfold) {
   const CameraPose start{Place{46.0, 8.0, 3000.0}, 0.7};
   const UtcTime begin = ParseInstant("2026-06-21T18:00:00Z");
   const auto at = [&](double seconds) { return BenchmarkFlight(start, begin, seconds); };
@@ -445,7 +445,7 @@ TEST(FrameTimes, TheFlightIsSteadyLevelAndTimeRunsSixtyfold) {
 
 class Benchmarks : public tests::Headless {};
 
-TEST_F(Benchmarks, EveryPassHasALineAndTheFrameTheLastOne) {
+TEST_F(Benchmarks, EveryPassHasALineAndTheFrameHasTheLast) {
   for (const PassClock clock : {PassClock::kFinishes, PassClock::kQueries}) {
     Benchmark benchmark(0.1, clock);
     while (benchmark.NextFrame()) {

@@ -34,7 +34,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-TEST(AsyncValue, ARequestThatANewerOneReplacedIsNotComputed) {
+TEST(AsyncValue, ReplacedRequestIsNotComputed) {
   std::promise<void> begun, go_on;
   std::vector<int> made;
   AsyncValue<int, int> value([&](const int& number) {
@@ -57,7 +57,7 @@ TEST(AsyncValue, ARequestThatANewerOneReplacedIsNotComputed) {
   EXPECT_EQ(made, (std::vector{1, 3}));
 }
 
-TEST(AsyncValue, ExceptionsReachTheCallerAndTheThreadGoesOn) {
+TEST(AsyncValue, ExceptionsReachTheCallerAndTheThreadContinues) {
   AsyncValue<int, int> value([](const int& number) {
     if (number == 1) throw std::runtime_error("no air");
     return number;
@@ -70,7 +70,7 @@ TEST(AsyncValue, ExceptionsReachTheCallerAndTheThreadGoesOn) {
   EXPECT_EQ(value.Poll(), std::optional(2));
 }
 
-TEST(AsyncValue, EndsWithARequestWaiting) {
+TEST(AsyncValue, CanBeDestroyedWithAWaitingRequest) {
   AsyncValue<int, int> value([](const int& number) { return number; });
   value.Request(1);
   SUCCEED() << "the destructor returns";
@@ -80,7 +80,7 @@ TEST(AsyncValue, EndsWithARequestWaiting) {
 int PriorityOfThisThread() { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); }
 
 // 19 is the lowest priority of Linux.
-TEST(AsyncValue, GivesWayToDrawingOnlyWhereItIsAskedToAndForGood) {
+TEST(AsyncValue, LowersThreadPriorityOnlyOnRequest) {
   AsyncValue<int, int> value([](const int&) { return PriorityOfThisThread(); },
                              std::equal_to<int>());
   const int usual = PriorityOfThisThread();
@@ -96,7 +96,7 @@ TEST(AsyncValue, GivesWayToDrawingOnlyWhereItIsAskedToAndForGood) {
 }
 #endif
 
-TEST(AsyncValue, FollowsItsInputAccordingToThePolicy) {
+TEST(AsyncValue, RequestsFollowThePolicy) {
   AsyncValue<double, double> value([](const double& input) { return 2.0 * input; },
                                    [](const double& requested, const double& wanted) {
                                      return std::abs(requested - wanted) < 0.5;
@@ -150,14 +150,14 @@ TEST_F(AirFollowerOnGpu, HasTablesForTheFirstFrame) {
   EXPECT_EQ(follower.making_s(), 0.0) << "made before drawing, not beside it";
 }
 
-TEST_F(AirFollowerOnGpu, ShowsExactTablesOnceAllStandsStill) {
+TEST_F(AirFollowerOnGpu, ShowsExactTablesWhenNothingMoves) {
   AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(30.0));
   Frames(follower, PlaceAt(2.5), SunUp(30.0));
   EXPECT_EQ(follower.eye().altitude_m, 2.5) << "however small the change";
   EXPECT_GT(follower.making_s(), 0.0);
 }
 
-TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
+TEST_F(AirFollowerOnGpu, IgnoresTinyChangesWhileTheEyeMoves) {
   AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(1000.0), SunUp(30.0));
   follower.WaitUntilReady(PlaceAt(1000.0), SunUp(30.0));
   for (int i = 1; i <= 10; ++i) {
@@ -167,7 +167,7 @@ TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
   EXPECT_EQ(follower.eye().altitude_m, 1000.0);
 }
 
-TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
+TEST_F(AirFollowerOnGpu, TablesAreMadeForTheFutureSun) {
   AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(3.0));
   follower.WaitUntilReady(PlaceAt(2.0), SunUp(3.0));
   // The sun moves so fast that it sinks by about 0.2 degrees until the tables are shown, however
@@ -184,7 +184,7 @@ TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
   EXPECT_LT(follower.eye().mu_s(), now.direction.for_air.z) << "lower, for the sun sinks";
 }
 
-TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
+TEST_F(AirFollowerOnGpu, WaitingShowsTheLastRequest) {
   AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(30.0));
   follower.Follow(PlaceAt(500.0), SunUp(20.0));
   follower.WaitUntilReady(PlaceAt(9000.0), SunUp(-3.0));
@@ -192,7 +192,7 @@ TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
   EXPECT_NEAR(follower.eye().mu_s(), std::sin(-3.0 * kRadiansPerDegree), 1e-12);
 }
 
-TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
+TEST_F(AirFollowerOnGpu, ANewMediumIsShownAsADraftFirst) {
   AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(30.0));
   follower.Replace(MediumPreset("hazy"));
   follower.Follow(PlaceAt(2.0), SunUp(30.0));
@@ -222,7 +222,7 @@ double ErrorOfOld(const EyeUnderLight& made, const EyeUnderLight& now) {
       .Rms();
 }
 
-TEST(AirChange, IsAboutTheErrorOfTablesThatAreNotMadeAnew) {
+TEST(AirChange, EstimatesTheErrorOfOldTables) {
   constexpr std::array<std::array<double, 4>, 9> kChanges{{{1500.0, 40.0, 1500.0, 39.0},
                                                            {1500.0, 5.0, 1500.0, 4.9},
                                                            {1500.0, 0.1, 1500.0, 0.05},
@@ -243,7 +243,7 @@ TEST(AirChange, IsAboutTheErrorOfTablesThatAreNotMadeAnew) {
   }
 }
 
-TEST_F(AirFollowerOnGpu, AMediumThatCannotBeShownIsRefusedAtOnce) {
+TEST_F(AirFollowerOnGpu, RefusesAnUnsupportedMediumAtOnce) {
   AirFollower follower(Earth(), AirQuality::kLow, PlaceAt(2.0), SunUp(30.0));
   EXPECT_THROW(follower.Replace(MediumPreset("earth", WavelengthSet(8))), InputError);
   Medium broken = MediumPreset("earth");
@@ -310,7 +310,7 @@ TEST(GroundFollower, WithoutLandThereIsNoLight) {
   EXPECT_EQ(follower.lit(), nullptr) << "no land around here";
 }
 
-TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
+TEST(GroundFollower, SeaWithoutLandMirrorsTheSky) {
   GroundCover sea;
   sea.kind = GroundCover::Kind::kWater;
   GroundFollower follower(sea, nullptr, kSmall);
@@ -323,7 +323,7 @@ TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
   for (std::size_t i = 0; i < kLayer; ++i) EXPECT_GT(mirror.waves[i][1], 0.0F) << "no horizon";
 }
 
-TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
+TEST(GroundFollower, LightOnTheRangeIsThatOfTheRequestedSun) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);
   EXPECT_TRUE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
@@ -342,7 +342,7 @@ TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   EXPECT_GT(lit[0].sky[0], 0.0F) << "level ground sees the sky";
 }
 
-TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
+TEST(GroundFollower, AHigherEyeHasLightOnMoreDistantLand) {
   EXPECT_EQ(kSmall.HalfWidthUnder(0.0), 8e3);
   EXPECT_EQ(kSmall.HalfWidthUnder(8e3 / 7.0), 8e3);
   EXPECT_EQ(kSmall.HalfWidthUnder(1.01 * 8e3 / 7.0), 16e3);
@@ -361,7 +361,7 @@ TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
   EXPECT_EQ(widths_m, (std::vector{8e3, 16e3, 8e3})) << "at 1100 m that of 1200 m is kept";
 }
 
-TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
+TEST(GroundFollower, LightIsComputedAgainOnlyForAnotherSun) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);
   static_cast<void>(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
@@ -374,7 +374,7 @@ TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
   EXPECT_EQ(&follower.lit()->site(), &first->site()) << "horizons are kept";
 }
 
-TEST(GroundFollower, ARunningSunIsMetWhereItWillStand) {
+TEST(GroundFollower, LightIsComputedForTheFutureSun) {
   const GroundFollower::View before = ViewFrom(kFollowedPlace, 5.0),
                              now = ViewFrom(kFollowedPlace, 4.9);
   const auto elevation_deg = [](const GroundFollower::View& view) {
@@ -438,7 +438,7 @@ TEST_F(ShadeFollowerTest, WithoutGroundThereIsNoShade) {
   EXPECT_FALSE(follower.shade().Shades());
 }
 
-TEST_F(ShadeFollowerTest, GroundIsAskedForAnewOnlyWhenTheEyeHasLeftIt) {
+TEST_F(ShadeFollowerTest, GroundIsRequestedAgainOnlyWhenTheEyeHasLeftIt) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
   follower.SetGround(Mountain(requested_));
@@ -458,7 +458,7 @@ TEST_F(ShadeFollowerTest, GroundIsAskedForAnewOnlyWhenTheEyeHasLeftIt) {
   EXPECT_EQ(requested_, 3) << "other ground";
 }
 
-TEST_F(ShadeFollowerTest, TheMapLiesUnderTheEye) {
+TEST_F(ShadeFollowerTest, MapIsCentredBelowTheEye) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
   follower.SetGround(Mountain(requested_));
@@ -471,7 +471,7 @@ TEST_F(ShadeFollowerTest, TheMapLiesUnderTheEye) {
   EXPECT_NEAR(north.z, 900.0 - 0.5 * 1112.0 * 1112.0 / 6.37e6, 0.01) << "round the earth";
 }
 
-TEST_F(ShadeFollowerTest, ASunThatOutrunsTheMapsIsStillFollowed) {
+TEST_F(ShadeFollowerTest, MapsFollowASunThatMovesFasterThanTheyAreMade) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
   follower.SetGround(Mountain(requested_));

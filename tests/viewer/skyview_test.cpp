@@ -40,7 +40,7 @@ class Skyview : public BareSceneFolder {
   }
 };
 
-TEST_F(Skyview, APictureMayBeWiderThanTheDriverDraws) {
+TEST_F(Skyview, PicturesMayBeWiderThanTheDriverAllows) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string wide =
       InFolder("s.toml") + " --headless --quality low --size 32768x3 --pitch 20 --screenshot ";
@@ -59,7 +59,7 @@ TEST_F(Skyview, APictureMayBeWiderThanTheDriverDraws) {
   EXPECT_THAT(one_piece.error, HasSubstr("--size 32768x3"));
 }
 
-TEST_F(Skyview, WithoutADisplayItWritesThePictureAsLinearExr) {
+TEST_F(Skyview, WritesALinearExrWithoutADisplay) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const Outcome outcome = Run(InFolder("s.toml") +
                               " --headless --size 32x18 --frames 3 --altitude 10000 --time "
@@ -71,7 +71,7 @@ TEST_F(Skyview, WithoutADisplayItWritesThePictureAsLinearExr) {
               HasSubstr("10000"));
 }
 
-TEST_F(Skyview, WithoutATimeItBeginsAtNoonOfThePlace) {
+TEST_F(Skyview, BeginsAtLocalNoonWithoutATime) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "untimed.toml",
             "[place]\nlatitude = 46.5\nlongitude = 8.0\n[terrain]\nnone = true\n"
@@ -126,7 +126,7 @@ TEST_F(Skyview, AReplayBecomesAFilm) {
   EXPECT_EQ(Run("--video " + InFolder("f.mp4")).status, 2) << "a film is of a replay";
 }
 
-TEST_F(Skyview, ABenchmarkPrintsTimesAndNothingElse) {
+TEST_F(Skyview, BenchmarkPrintsOnlyTimes) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const Outcome outcome = Run(InFolder("s.toml") + " --headless --size 16x9 --benchmark 0.2");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
@@ -136,7 +136,7 @@ TEST_F(Skyview, ABenchmarkPrintsTimesAndNothingElse) {
   EXPECT_EQ(Run("--headless --benchmark 1 --screenshot a.png").status, 2);
 }
 
-TEST_F(Skyview, WithoutADisplayItWritesAPngWithInstrumentsOnlyWhereTheyAreAskedFor) {
+TEST_F(Skyview, WritesInstrumentsIntoAPngOnlyOnRequest) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string picture =
       InFolder("s.toml") + " --headless --quality low --size 320x240 --screenshot ";
@@ -156,7 +156,7 @@ TEST_F(Skyview, WithoutADisplayItWritesAPngWithInstrumentsOnlyWhereTheyAreAskedF
   EXPECT_THAT(linear.error, HasSubstr("on.exr"));
 }
 
-TEST_F(Skyview, OfAQualityThatThereIsNotItSaysSo) {
+TEST_F(Skyview, AnUnknownQualityIsRefusedWithTheKnownOnes) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string take_screenshot = InFolder("s.toml") + " --headless --size 16x9 --screenshot ";
   const Outcome wrong = Run(take_screenshot + InFolder("a.png") + " --quality best");
@@ -164,7 +164,7 @@ TEST_F(Skyview, OfAQualityThatThereIsNotItSaysSo) {
   EXPECT_THAT(wrong.error, HasSubstr("best"));
 }
 
-TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
+TEST_F(Skyview, EyeLookIsDarkAtDuskAndRecordsItsExposure) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const auto take_screenshot = [&](const std::string& name, const std::string& options) {
     const Outcome outcome =
@@ -199,7 +199,7 @@ TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
   EXPECT_NE(ReadPng(InFolder("neutral.png")).rgb, ReadPng(InFolder("asked.png")).rgb);
 }
 
-TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
+TEST_F(Skyview, PathsOfOtherProgramsAreReplayed) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "p.csv",
             "t_s,latitude,longitude,height_m,heading,utc\n0,46.5,8,3000,350,2026-06-21T10:00:00Z\n"
@@ -226,7 +226,7 @@ PictureDifference Apart(const HdrImage& a, const HdrImage& b) {
   return {apart / static_cast<double>(a.rgb.size()), std::abs(sum_b / sum_a - 1.0)};
 }
 
-TEST_F(Skyview, WideViewsAndPanoramasHaveTheProjectionOfSkyseries) {
+TEST_F(Skyview, ProjectsWideViewsAndPanoramasAsSkyseries) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   for (const int fov : {150, 170, 360}) {
     // Neither sun nor moon is up: their disks are smaller than a pixel.
@@ -259,7 +259,7 @@ TEST_F(Skyview, WideViewsAndPanoramasHaveTheProjectionOfSkyseries) {
   }
 }
 
-TEST_F(Skyview, InstrumentsUnderAWideViewComeWithAMessage) {
+TEST_F(Skyview, InstrumentsOnAWideViewGiveAMessage) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "wide.toml",
             std::string(kBareSceneText) + "[camera]\nheight_m = 2000.0\nfov = 360\n");
@@ -272,7 +272,7 @@ TEST_F(Skyview, InstrumentsUnderAWideViewComeWithAMessage) {
   EXPECT_THAT(Run(picture).error, Not(HasSubstr("field of view"))) << "it is all shown";
 }
 
-TEST_F(Skyview, APictureOfEdgesAloneIsExplainedAsSuch) {
+TEST_F(Skyview, ExplainReportsAPictureOfEdgesOnly) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "s.toml",
             std::string(kBareSceneText) +
@@ -282,7 +282,7 @@ TEST_F(Skyview, APictureOfEdgesAloneIsExplainedAsSuch) {
   EXPECT_THAT(outcome.out, HasSubstr("every pixel is an edge"));
 }
 
-TEST_F(Skyview, ATrackIsFlownAsSkyseriesFliesIt) {
+TEST_F(Skyview, FliesATrackAsSkyseries) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   std::string points;
   for (int i = 0; i < 10; ++i) {
@@ -314,14 +314,14 @@ TEST_F(Skyview, ATrackIsFlownAsSkyseriesFliesIt) {
 }
 
 // Hard case 49.
-TEST_F(Skyview, WithoutADisplayAWindowIsRefusedWithStatusFive) {
+TEST_F(Skyview, AWindowWithoutADisplayExitsWith5) {
   const Outcome outcome = Run(InFolder("s.toml"));
   EXPECT_EQ(outcome.status, 5);
   EXPECT_THAT(outcome.error, HasSubstr("no display"));
   EXPECT_THAT(outcome.error, HasSubstr("--headless"));
 }
 
-TEST_F(Skyview, AWrongCommandLineEndsWithStatusTwo) {
+TEST_F(Skyview, AWrongCommandLineExitsWith2) {
   EXPECT_EQ(Run("--headless").status, 2) << "nothing would be seen";
   EXPECT_EQ(Run("--nonsense").status, 2);
   EXPECT_EQ(Run("--headless --screenshot a.png --frames 0").status, 2);
@@ -340,7 +340,7 @@ TEST_F(Skyview, AWrongCommandLineEndsWithStatusTwo) {
   }
 }
 
-TEST_F(Skyview, AWrongInputEndsWithStatusThreeAndNamesIt) {
+TEST_F(Skyview, AWrongInputExitsWith3AndIsNamed) {
   const std::pair<const char*, const char*> cases[] = {
       {"--headless --screenshot a.png --time 2026-02-30T00:00:00Z", "2026-02-30"},
       {"missing.toml --headless --screenshot a.png", "missing.toml"},
@@ -366,7 +366,7 @@ TEST_F(Skyview, AMediumOfManyBandsIsRefused) {
   EXPECT_THAT(outcome.error, HasSubstr("at most 4"));
 }
 
-TEST_F(Skyview, APictureThatCannotBeWrittenEndsWithStatusFourBeforeTheFlight) {
+TEST_F(Skyview, AnUnwritablePictureExitsWith4BeforeTheFlight) {
   const Outcome outcome =
       Run(InFolder("s.toml") + " --headless --size 16x9 --screenshot " + InFolder("s.toml/a.png"));
   EXPECT_EQ(outcome.status, 4) << outcome.error;
@@ -419,7 +419,7 @@ TEST_F(Skyview, OtherNamesOfOptionsAreAccepted) {
 }
 
 // Hard case 49.
-TEST_F(Skyview, WithoutADisplayAnOpenGlOlderThan33IsRefusedWithStatusFive) {
+TEST_F(Skyview, OpenGlOlderThan33ExitsWith5) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const HeadlessContext context;
   if (GlDescription().find("Mesa") == std::string::npos) {
@@ -455,7 +455,7 @@ class SkyviewLand : public tests::LandFolder {
   }
 };
 
-TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
+TEST_F(SkyviewLand, SeveralModelsFormOneLand) {
   const std::string both = "--dem west.tif --dem east.tif --pitch -20";
   const Outcome outcome = TakeScreenshot(both, "a.exr");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
@@ -468,7 +468,7 @@ TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
   EXPECT_EQ(beside.status, 0) << "land may be far from the eye: " << beside.error;
 }
 
-TEST_F(SkyviewLand, AReplayBelowTheGroundIsRefusedByFileAndPoint) {
+TEST_F(SkyviewLand, AReplayBelowTheGroundIsRefusedWithFileAndPoint) {
   const std::string begin = "t_s,latitude,longitude,height_m,heading\n0,46.65,8.05,9000,350\n";
   for (const char* land : {"--dem west.tif", ""}) {
     WriteText(folder_ / "s.toml", std::string("[place]\nlatitude = 46.65\nlongitude = 8.05\n") +
@@ -484,7 +484,7 @@ TEST_F(SkyviewLand, AReplayBelowTheGroundIsRefusedByFileAndPoint) {
   }
 }
 
-TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedThere) {
+TEST_F(SkyviewLand, AFlightAboveGroundIsRecordedAndReplayedAtItsHeight) {
   Outcome outcome =
       TakeScreenshot("--dem west.tif --pitch -20 --time noon --record f.csv --frames 4");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
@@ -503,7 +503,7 @@ TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedT
   EXPECT_EQ(outcome.status, 0) << "no point lies in the ground: " << outcome.error;
 }
 
-TEST_F(SkyviewLand, WithAModelAndAPlaceItBeginsAtNoonOfThePlaceAndSaysWhatIsMissing) {
+TEST_F(SkyviewLand, BeginsAtLocalNoonAndNamesMissingOptions) {
   const Outcome outcome = TakeScreenshot("--dem west.tif --place RJTT", "a.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_EQ(ReadExrMetadata(folder_ / "a.exr").at("alpenglow.time").substr(0, 15),
@@ -531,7 +531,7 @@ double MeanErrorIn(const std::string& report) {
   return std::stod(report.substr(at + row.size()));
 }
 
-TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
+TEST_F(SkyviewLand, ExplainUsesTheLoadedLandOfSeveralModels) {
   const Outcome outcome =
       RunCommand(std::string("env -u DISPLAY -u WAYLAND_DISPLAY '") + tests::kSkyview +
                  "' --headless --size 64x36 --quality high --dem west.tif "
@@ -571,7 +571,7 @@ TEST_F(SkyviewLand, ALakeBetweenMountainsMirrorsThemAsInSkyseries) {
 }
 
 // Hard case 17.
-TEST_F(SkyviewLand, OverBothPolesAndTheDateLineItShowsTheLandOfTheRenderer) {
+TEST_F(SkyviewLand, ShowsTheRenderersLandAtPolesAndDateLine) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   struct PolarView {
     double hemisphere, from_pole, longitude;
@@ -604,7 +604,7 @@ UtcTime FirstListed(const std::string& list) {
   return ParseInstant(frame == std::string::npos ? list : list.substr(frame + 3, kInstant));
 }
 
-TEST_F(SkyviewLand, AnEventIsAtTheTimeThatSkyseriesLists) {
+TEST_F(SkyviewLand, EventsHaveTheTimesThatSkyseriesLists) {
   WriteText(folder_ / "s.toml", kBareSceneText);
   const std::string event = " '2026-05-10 sunset'", north = "--latitude 69.65 --longitude 18.96";
   const std::pair<std::string, std::string> places[] = {{north, "s.toml " + north},
@@ -620,7 +620,7 @@ TEST_F(SkyviewLand, AnEventIsAtTheTimeThatSkyseriesLists) {
   }
 }
 
-TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
+TEST_F(SkyviewLand, SkippedFilesOfAFolderAreReported) {
   std::filesystem::create_directory(folder_ / "land");
   tests::WriteCoarseTile(folder_ / "land/west.tif", 0, 0);
   WriteText(folder_ / "land/broken.tif", "not a picture at all");
@@ -673,14 +673,14 @@ class MeshPictures : public BareSceneFolder {
   }
 };
 
-TEST_F(MeshPictures, ASmallMeshIsLitAsTheRendererLightsItAndFaultsOfItsFileAreTold) {
+TEST_F(MeshPictures, SmallMeshesAreLitAsInTheRendererAndFaultsReported) {
   WriteScene(tests::ObjOf({{0.3, 58.0}}) + "f 1 1 2\n",
              "height_m = 60.0\npitch = -90.0\nfov = 10.0");
   for (const Outcome& outcome : ExpectAlikeAt(32, 18, 0.05, "a square of 60 cm "))
     EXPECT_THAT(outcome.error, HasSubstr("1 face without area left out (the first in line 6)"));
 }
 
-TEST_F(MeshPictures, AMeshFarAwayIsLitAsTheRendererLightsIt) {
+TEST_F(MeshPictures, DistantMeshesAreLitAsInTheRenderer) {
   constexpr double kAway_km = 72.0;
   WriteScene(tests::ObjOf({{5000.0, 1000.0, 0.0, 1e3 * kAway_km}}),
              fmt::format("height_m = 9000.0\nheading = 0.0\npitch = {}\nfov = 5.0",
@@ -688,7 +688,7 @@ TEST_F(MeshPictures, AMeshFarAwayIsLitAsTheRendererLightsIt) {
   ExpectAlikeAt(32, 18, 0.08, "72 km away ");
 }
 
-TEST_F(MeshPictures, AReplayMayComeFromFarToTheMesh) {
+TEST_F(MeshPictures, AReplayMayApproachTheMeshFromFar) {
   // The viewer lights a mesh on a grid of 1 cm, at most 1024 samples wide: this is a small one.
   WriteScene(tests::ObjOf({{1.0, 0.0}}),
              "height_m = 60.0\nheading = 270.0\npitch = -90.0\nfov = 20.0");
@@ -726,7 +726,7 @@ TEST_F(MeshPictures, AFlatMeshHasNoReliefInEitherProgram) {
   }
 }
 
-TEST_F(MeshPictures, UnderARoofACameraAndALampAreInTheOpen) {
+TEST_F(MeshPictures, CamerasAndLampsUnderARoofAreInTheOpen) {
   // The viewer lights a mesh on a grid of 1 cm, at most 1024 samples wide. Under sanitizers, the
   // scene is a twentieth as large.
   constexpr double kScale = tests::ScaledDown(1.0, 0.05);
@@ -740,7 +740,7 @@ TEST_F(MeshPictures, UnderARoofACameraAndALampAreInTheOpen) {
   ExpectAlikeAt(32, 18, 0.1, "the floor in the light of the lamp ");
 }
 
-TEST_F(MeshPictures, BelowTheLowestSurfaceBothRefuseALamp) {
+TEST_F(MeshPictures, BothProgramsRefuseALampBelowTheSurface) {
   const std::string lamp =
       "[[light]]\nlatitude = 46.5\nlongitude = 8.0\nheight_m = 19.0\nintensity_cd = 5000.0\n";
   WriteScene(tests::RoofObj(), "height_m = 40.0", "2026-01-15T23:30:00Z", lamp);

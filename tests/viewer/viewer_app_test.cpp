@@ -162,7 +162,7 @@ TEST_F(ViewerAppFiles, F3WritesAPictureIntoTheCurrentFolder) {
   EXPECT_TRUE(std::filesystem::exists("skyview-0002.png"));
 }
 
-TEST_F(ViewerAppFiles, WhoLeavesDoesNotLoseThePictureUnderWay) {
+TEST_F(ViewerAppFiles, LeavingWaitsForTheUnfinishedPicture) {
   static_cast<void>(Shown());
   Press(kF3);
   app_->Leave();
@@ -173,7 +173,7 @@ TEST_F(ViewerAppFiles, WhoLeavesDoesNotLoseThePictureUnderWay) {
   EXPECT_TRUE(std::filesystem::exists("skyview-0001.png"));
 }
 
-TEST_F(ViewerAppFiles, WhoLeavesTwiceGivesUpThePicture) {
+TEST_F(ViewerAppFiles, LeavingTwiceAbandonsThePicture) {
   static_cast<void>(Shown());
   Press(kF3);
   app_->Leave();
@@ -183,7 +183,7 @@ TEST_F(ViewerAppFiles, WhoLeavesTwiceGivesUpThePicture) {
   EXPECT_TRUE(std::filesystem::is_empty(".")) << "nor is there a part of it";
 }
 
-TEST_F(ViewerAppFiles, AnAppThatEndsHasWrittenItsPictures) {
+TEST_F(ViewerAppFiles, DestructorWritesRequestedPictures) {
   static_cast<void>(Shown());
   Press(kF3);
   Commands().Request({".png", ImageSize{320, 240}, true});
@@ -208,7 +208,7 @@ TEST_F(ViewerAppFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
   EXPECT_FALSE(std::filesystem::exists("skyview-0003.exr"));
 }
 
-TEST_F(ViewerAppFiles, APictureThatCannotBeWrittenIsAWarning) {
+TEST_F(ViewerAppFiles, AnUnwritablePictureIsAWarning) {
   static_cast<void>(Shown());
   const std::filesystem::path gone = std::filesystem::current_path() / "gone";
   std::filesystem::create_directory(gone);
@@ -224,7 +224,7 @@ double Apart_m(const CameraPose& a, const CameraPose& b) {
   return glm::length((EcefFromGeodetic(kWgs84, a.place) - EcefFromGeodetic(kWgs84, b.place)).xyz);
 }
 
-TEST_F(ViewerAppTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
+TEST_F(ViewerAppTest, CtrlRReplaysTheFlightAndThenContinues) {
   flight_->controller().clock().SetRate(60.0);
   Hold({kW, kRightArrow}, true);
   const std::vector<Moment> flown = Fly(120);
@@ -248,7 +248,7 @@ TEST_F(ViewerAppTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
   EXPECT_LT(Apart_m(on.back().eye, flown.back().eye), 20 * 20.0) << "but was not while it replayed";
 }
 
-TEST_F(ViewerAppTest, WhoTakesOverAReplayFliesOnFromThere) {
+TEST_F(ViewerAppTest, TakingOverAReplayContinuesFromThere) {
   Hold({kW}, true);
   static_cast<void>(Fly(120));
   Hold({kW}, false);
@@ -262,7 +262,7 @@ TEST_F(ViewerAppTest, WhoTakesOverAReplayFliesOnFromThere) {
   EXPECT_GT(Apart_m(flight_->eye(), end), 500.0);
 }
 
-TEST_F(ViewerAppTest, WhereNothingWasFlownThereIsNothingToFlyAgain) {
+TEST_F(ViewerAppTest, WithoutAFlightThereIsNothingToReplay) {
   static_cast<void>(Fly(10));
   const CameraPose before = flight_->eye();
   Press(kR, kControlKey);
@@ -273,7 +273,7 @@ TEST_F(ViewerAppTest, WhereNothingWasFlownThereIsNothingToFlyAgain) {
   EXPECT_EQ(app_->Model().flight.mode, "free camera");
 }
 
-TEST_F(ViewerAppFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
+TEST_F(ViewerAppFiles, ShiftF2WritesTheFlightSoFar) {
   Press(kF2, kShiftKey);
   EXPECT_FALSE(std::filesystem::exists("flight-0001.csv")) << "nothing has been flown yet";
   ASSERT_FALSE(Messages().empty());
@@ -290,7 +290,7 @@ TEST_F(ViewerAppFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
   EXPECT_GT(ReadFlight("flight-0002.csv").end_s(), path.end_s());
 }
 
-TEST_F(ViewerAppFiles, ThePanelBeginsAndEndsARecord) {
+TEST_F(ViewerAppFiles, ThePanelStartsAndStopsRecording) {
   Hold({kW}, true);
   static_cast<void>(Fly(30));
   EXPECT_FALSE(app_->Model().recording);
@@ -310,7 +310,7 @@ TEST_F(ViewerAppFiles, ThePanelBeginsAndEndsARecord) {
   Commands().Record(false);
 }
 
-TEST_F(ViewerAppFiles, ARecordThatNobodyEndedIsWholeWhenTheAppHasEnded) {
+TEST_F(ViewerAppFiles, DestructorFinishesTheRecord) {
   {
     FlightRecorder recorder;
     ViewerApp app(*flight_, recorder, {});
@@ -323,7 +323,7 @@ TEST_F(ViewerAppFiles, ARecordThatNobodyEndedIsWholeWhenTheAppHasEnded) {
 /// 300 m over mountains about 1500 m high.
 using ViewerAppOverLand = tests::HeadlessTile;
 
-TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
+TEST_F(ViewerAppOverLand, RecordsNothingBeforeTheGroundIsKnown) {
   const Scene scene = SceneOverTile(tests::PlaceOfSample(120.0, 200.0, 0.0),
                                     CameraFromDegrees({300.0, true}, 0.0, 0.0, 0.0, 60.0));
   FlightSessionSettings settings;
@@ -356,7 +356,7 @@ TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
         << "places and heights are written in millimetres, on slopes of 60 degrees at most";
 }
 
-TEST_F(ViewerAppTest, APlaceThatIsAskedForMovesTheEye) {
+TEST_F(ViewerAppTest, ARequestedPlaceMovesTheEye) {
   Commands().MoveTo({47.25, 9.5, 2500.0, {}, {}});
   EXPECT_NEAR(flight_->eye().place.latitude_rad(), 47.25 * kRadiansPerDegree, 1e-12);
   EXPECT_NEAR(flight_->eye().place.longitude_rad(), 9.5 * kRadiansPerDegree, 1e-12);
@@ -364,7 +364,7 @@ TEST_F(ViewerAppTest, APlaceThatIsAskedForMovesTheEye) {
   EXPECT_TRUE(Messages().empty());
 }
 
-TEST_F(ViewerAppTest, APlaceThatNobodyKnowsIsAWarningAndTheEyeStays) {
+TEST_F(ViewerAppTest, AnUnknownPlaceIsAWarningAndTheEyeStays) {
   const CameraPose before = flight_->eye();
   Commands().GoTo("Nowhere at all");
   EXPECT_EQ(flight_->eye(), before);
@@ -404,7 +404,7 @@ TEST_F(ViewerAppTest, TheLandingLightOfTheKeyShinesOnTheGround) {
   EXPECT_GT(mean_cd_per_m2(), 2.0 * dark);
 }
 
-TEST_F(ViewerAppTest, EachEventIsTheOneThatItNames) {
+TEST_F(ViewerAppTest, EventButtonsJumpToTheNamedEvent) {
   const std::pair<SkyEvent, const char*> cases[] = {{SkyEvent::kSunset, "2026-06-21T19:3"},
                                                     {SkyEvent::kDusk, "2026-06-21T20:0"},
                                                     {SkyEvent::kDawn, "2026-06-22T02:5"},
@@ -416,7 +416,7 @@ TEST_F(ViewerAppTest, EachEventIsTheOneThatItNames) {
   }
 }
 
-TEST_F(ViewerAppTest, TypedTimesAreSetAndOthersAreWarnings) {
+TEST_F(ViewerAppTest, InvalidTypedTimesAreWarnings) {
   Commands().SetTime("2026-06-22T04:00:00Z");
   EXPECT_EQ(FormatUtc(flight_->now()), "2026-06-22T04:00:00Z");
   Commands().SetTime("sunsat");
@@ -424,7 +424,7 @@ TEST_F(ViewerAppTest, TypedTimesAreSetAndOthersAreWarnings) {
   EXPECT_TRUE(Messages().back().is_warning);
 }
 
-TEST_F(ViewerAppTest, KeysEnterTheModesThatThereAre) {
+TEST_F(ViewerAppTest, KeysEnterTheAvailableModes) {
   Press('2');
   EXPECT_EQ(flight_->controller().pilot().mode(), FlightMode::kAircraft);
   Press('3');
@@ -464,7 +464,7 @@ TEST_F(ViewerAppTest, AnotherLookAndWhiteBalanceChangeThePicture) {
   EXPECT_LT(Changed(none, Shown()), 4000) << "daylight, as camera is by day; instruments changed";
 }
 
-TEST_F(ViewerAppTest, EscAsksAndEnterLeaves) {
+TEST_F(ViewerAppTest, EscThenEnterLeaves) {
   Press(kEscape);
   EXPECT_FALSE(app_->quit());
   static_cast<void>(Fly(2));
@@ -481,7 +481,7 @@ TEST_F(ViewerAppTest, EscTwiceStays) {
   EXPECT_FALSE(app_->quit());
 }
 
-TEST_F(ViewerAppTest, MessagesGoAfterAWhile) {
+TEST_F(ViewerAppTest, MessagesDisappearAfterSomeSeconds) {
   app_->Report("hello");
   app_->Advance({{}, kSize, 4.0});
   EXPECT_EQ(Messages().size(), 1U);

@@ -13,7 +13,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-class WindowHears : public ::testing::Test {
+class WindowInput : public ::testing::Test {
  protected:
   /// Opens a window on a display that does this.
   void Open(const std::string& script) {
@@ -29,7 +29,7 @@ class WindowHears : public ::testing::Test {
   std::unique_ptr<Window> window_;
 };
 
-TEST_F(WindowHears, KeysComeInOrderWithTheirModifiersAndWhatIsPrintedOnThem) {
+TEST_F(WindowInput, KeysArriveInOrderWithModifiersAndLetters) {
   Open("hold:87 key:292,1 text:228 text:8364 text:128169 8x8 let:87 8x8");
   const WindowEvents first = Next();
   ASSERT_EQ(first.keys.size(), 3U);
@@ -47,7 +47,7 @@ TEST_F(WindowHears, KeysComeInOrderWithTheirModifiersAndWhatIsPrintedOnThem) {
   EXPECT_EQ(second.text, "");
 }
 
-TEST_F(WindowHears, AClickShorterThanAFrameIsHeldForOne) {
+TEST_F(WindowInput, AClickShorterThanAFrameLastsOneFrame) {
   Open("move:3,4 press:0 release:0 press:1 8x8 8x8 release:1 8x8 8x8");
   const WindowEvents first = Next();
   EXPECT_TRUE(first.buttons[0]);
@@ -60,7 +60,7 @@ TEST_F(WindowHears, AClickShorterThanAFrameIsHeldForOne) {
   EXPECT_FALSE(Next().buttons[1]);
 }
 
-TEST_F(WindowHears, ThePointerIsToldInPixelsOfThePicture) {
+TEST_F(WindowInput, PointerPositionsAreInPixelsOfThePicture) {
   Open("8x8 move:3,1 8x8 leave 8x8 press:0 8x8");
   EXPECT_FALSE(Next().pointer.has_value()) << "not in the window yet";
   const WindowEvents inside = Next();
@@ -72,14 +72,14 @@ TEST_F(WindowHears, ThePointerIsToldInPixelsOfThePicture) {
   EXPECT_EQ(window_->content_scale(), 2.0);
 }
 
-TEST_F(WindowHears, StepsOfTheWheelAddUp) {
+TEST_F(WindowInput, StepsOfTheWheelAddUp) {
   Open("wheel:1 wheel:2 8x8 wheel:-1 8x8 8x8");
   EXPECT_EQ(Next().wheel, 3.0);
   EXPECT_EQ(Next().wheel, -1.0);
   EXPECT_EQ(Next().wheel, 0.0);
 }
 
-TEST_F(WindowHears, WhatLooksAwayIsTold) {
+TEST_F(WindowInput, LossOfFocusIsReported) {
   Open("8x8 focus:0 8x8 focus:1 minimise:1 8x8 minimise:0 8x8 0x0");
   const WindowEvents open = Next();
   EXPECT_TRUE(open.focused && !open.minimised && !open.close);
@@ -91,7 +91,7 @@ TEST_F(WindowHears, WhatLooksAwayIsTold) {
   EXPECT_TRUE(Next().close);
 }
 
-TEST_F(WindowHears, TheFirstGamepadIsRead) {
+TEST_F(WindowInput, TheFirstGamepadIsRead) {
   Open("8x8 pad:0.5,1 8x8");
   EXPECT_FALSE(Next().gamepad.has_value());
   const WindowEvents events = Next();
@@ -101,7 +101,7 @@ TEST_F(WindowHears, TheFirstGamepadIsRead) {
   EXPECT_EQ(events.gamepad->buttons[0], 1);
 }
 
-TEST_F(WindowHears, AResetOfTheGraphicsCardIsADisplayThatIsLost) {
+TEST_F(WindowInput, AResetOfTheGpuLosesTheDisplay) {
   Open("8x8 reset 8x8");
   (void)Next();
   EXPECT_NO_THROW(window_->Swap());
@@ -111,7 +111,7 @@ TEST_F(WindowHears, AResetOfTheGraphicsCardIsADisplayThatIsLost) {
 
 // --- the icon ---
 
-TEST(WindowIcons, ThePeakIsRedUnderASkyThatIsBlueAbove) {
+TEST(WindowIcons, ShowARedPeakUnderABlueSky) {
   for (const int side : {16, 48}) {
     const std::vector<std::uint8_t> icon = WindowIcon(side);
     ASSERT_EQ(icon.size(), static_cast<std::size_t>(4 * side * side));

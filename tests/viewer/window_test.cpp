@@ -50,7 +50,7 @@ std::vector<std::string> Shown(const std::string& printed) {
 }
 
 // Hard case 49.
-TEST_F(SkyviewWindow, MinimisedResizedAndMovedToAnotherDisplayItGoesOn) {
+TEST_F(SkyviewWindow, ContinuesWhenMinimisedResizedOrMoved) {
   // The window opens, is minimised, moves to a display of twice the density, and shrinks to a pixel
   // and to a column.
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 0x0 0x0 128x72 1x1 1x40'", "--hud off");
@@ -60,7 +60,7 @@ TEST_F(SkyviewWindow, MinimisedResizedAndMovedToAnotherDisplayItGoesOn) {
 }
 
 // Hard case 49.
-TEST_F(SkyviewWindow, AScreenshotHasTheSizeThatTheWindowHasThen) {
+TEST_F(SkyviewWindow, AScreenshotHasTheCurrentSizeOfTheWindow) {
   const Outcome outcome =
       Run("ALPENGLOW_DISPLAY='64x36 0x0 100x50 100x50'", "--frames 2 --screenshot shot.png");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
@@ -70,14 +70,14 @@ TEST_F(SkyviewWindow, AScreenshotHasTheSizeThatTheWindowHasThen) {
 }
 
 // Hard case 49.
-TEST_F(SkyviewWindow, OpenedMinimisedAndClosedItEndsInPeace) {
+TEST_F(SkyviewWindow, EndsNormallyWhenOpenedMinimised) {
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='0x0 0x0'", "");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(Shown(outcome.out), ElementsAre());
 }
 
 // Hard case 49.
-TEST_F(SkyviewWindow, ADisplayWithOpenGl21IsRefusedWithStatusFiveAndAClearMessage) {
+TEST_F(SkyviewWindow, OpenGl21ExitsWith5AndAClearMessage) {
   for (const char* newest : {"2.1", "3.2"}) {
     const Outcome outcome =
         Run(std::string("ALPENGLOW_DISPLAY=64x36 ALPENGLOW_DISPLAY_GL=") + newest,
@@ -98,7 +98,7 @@ std::string DisplayWith(const std::string& word) {
   return "ALPENGLOW_DISPLAY='" + script + word + " 16x9'";
 }
 
-TEST_F(SkyviewWindow, AfterASignalAndOfADisplayThatGoesTheRecordIsWhole) {
+TEST_F(SkyviewWindow, ASignalOrALostDisplayLeavesACompleteRecord) {
   struct Case {
     const char* word;
     int status;
@@ -115,7 +115,7 @@ TEST_F(SkyviewWindow, AfterASignalAndOfADisplayThatGoesTheRecordIsWhole) {
   }
 }
 
-TEST_F(SkyviewWindow, AFlightThatEndsBeforeItsLandIsThereLeavesNoRecordAndSaysSo) {
+TEST_F(SkyviewWindow, AFlightEndingBeforeItsLandLoadsReportsNoRecord) {
   WriteText(folder_ / "s.toml",
             "[place]\nlatitude = 46.5\nlongitude = 8.0\n[terrain]\nrange = true\n"
             "[atmosphere]\npreset = \"bruneton2017\"\n");
@@ -126,7 +126,7 @@ TEST_F(SkyviewWindow, AFlightThatEndsBeforeItsLandIsThereLeavesNoRecordAndSaysSo
   EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv.part"));
 }
 
-TEST_F(SkyviewWindow, WhatWasFlownBeforeAKillIsReplayed) {
+TEST_F(SkyviewWindow, ReplaysAFlightThatWasKilled) {
   const Outcome killed = Run(DisplayWith("raise:9"), "--record f.csv");
   EXPECT_NE(killed.status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv"));
@@ -141,7 +141,7 @@ TEST_F(SkyviewWindow, WhatWasFlownBeforeAKillIsReplayed) {
   EXPECT_EQ(again.status, 3) << "the record would be written over what is replayed";
 }
 
-TEST_F(SkyviewWindow, AReplayBeginsWhereTheFlightDid) {
+TEST_F(SkyviewWindow, AReplayBeginsAtTheStartOfTheFlight) {
   WriteText(folder_ / "p.csv",
             "t_s,latitude,longitude,height_m,heading,utc\n0,46.5,8,3000,350,2026-06-21T10:00:00Z\n"
             "1000,46.6,8,3100,10,2026-06-21T10:16:40Z\n");
@@ -156,7 +156,7 @@ TEST_F(SkyviewWindow, AReplayBeginsWhereTheFlightDid) {
   EXPECT_LT(since_s, 60.0);
 }
 
-TEST_F(SkyviewWindow, AWindowBeyondTheDriversLimitIsRefusedBeforeAnythingIsDrawn) {
+TEST_F(SkyviewWindow, AWindowBeyondTheDriversLimitIsRefused) {
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='40000x8 40000x8'", "--record f.csv");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.error, HasSubstr("--size 40000x8"));
@@ -164,7 +164,7 @@ TEST_F(SkyviewWindow, AWindowBeyondTheDriversLimitIsRefusedBeforeAnythingIsDrawn
   EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv"));
 }
 
-TEST_F(SkyviewWindow, ThePictureOfF3IsWrittenWhenTheWindowIsClosedOrItsDisplayGoes) {
+TEST_F(SkyviewWindow, ClosingOrLosingTheDisplayWritesThePictureOfF3) {
   const Outcome closed = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36'", "");
   EXPECT_EQ(closed.status, 0) << closed.error;
   const Outcome gone = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36 gone 64x36'", "");
@@ -174,7 +174,7 @@ TEST_F(SkyviewWindow, ThePictureOfF3IsWrittenWhenTheWindowIsClosedOrItsDisplayGo
     EXPECT_EQ(ReadPng(folder_ / name).width, 64);
 }
 
-TEST_F(SkyviewWindow, ShiftF10FillsTheScreenAndGoesBack) {
+TEST_F(SkyviewWindow, ShiftF10TogglesFullScreen) {
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='16x9 key:299,1 16x9 key:299,1 16x9'", "");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(outcome.out, HasSubstr("screen 200x100\n"));

@@ -32,7 +32,7 @@ class OpenSkyFollower {
  public:
   /// Step of the elevations for which tables are computed. Between them the irradiance of slopes
   /// is within 0.3 % of that of a table, while it is above a millionth of daylight
-  /// (OpenSkyFollower.BetweenTablesTheLightIsThatOfATable).
+  /// (OpenSkyFollower.InterpolatedLightEqualsThatOfATable).
   static constexpr double kStep_rad = 3e-3;
 
   using Make = std::function<SkyIrradianceGradient(const OpenSky&)>;

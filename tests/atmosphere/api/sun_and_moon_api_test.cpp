@@ -19,7 +19,7 @@ using atmosphere::kRadiansPerDegree;
 
 constexpr Place kFuji{35.36, 138.73, 2500.0};
 
-TEST(PlaceTime, TextsComeBack) {
+TEST(PlaceTime, TextsSurviveARoundTrip) {
   const UtcTime time = TimeFromText("2026-06-21T13:00:00+09:00");
   EXPECT_EQ(TextFromTime(time), "2026-06-21T04:00:00Z");
   EXPECT_EQ(time, TimeFromText("2026-06-21T13:00:00", "Asia/Tokyo"));
@@ -29,7 +29,7 @@ TEST(PlaceTime, TextsComeBack) {
 
 using SystemTime = std::chrono::sys_time<std::chrono::microseconds>;
 
-TEST(PlaceTime, TheSystemClockShowsALeapSecondAsTheFirstOfTheNextDay) {
+TEST(PlaceTime, LeapSecondsBecomeTheFirstSecondOfTheNextDay) {
   const UtcTime leap = TimeFromText("2016-12-31T23:59:60Z");
   const UtcTime next = TimeFromText("2017-01-01T00:00:00Z");
   EXPECT_EQ(SystemTime(leap), SystemTime(next));
@@ -39,7 +39,7 @@ TEST(PlaceTime, TheSystemClockShowsALeapSecondAsTheFirstOfTheNextDay) {
   EXPECT_EQ(TextFromTime(leap + std::chrono::seconds(1)), "2017-01-01T00:00:01Z");
 }
 
-TEST(PlaceTime, TimesOfTheSystemClockComeBack) {
+TEST(PlaceTime, TimesOfTheSystemClockSurviveARoundTrip) {
   for (const std::int64_t count : {0LL, 1LL, -1LL, 1700000000123456LL, -2208988800000000LL}) {
     const std::chrono::microseconds since_1970(count);
     EXPECT_EQ(SystemTime(UtcTime(since_1970)), SystemTime(since_1970));
@@ -48,7 +48,7 @@ TEST(PlaceTime, TimesOfTheSystemClockComeBack) {
   EXPECT_EQ(UtcTime(), SystemTime());
 }
 
-TEST(PlaceTime, DurationsMoveATime) {
+TEST(PlaceTime, DurationsCanBeAddedToATime) {
   UtcTime time = TimeFromText("2026-06-21T13:00:00Z");
   const UtcTime begin = time;
   time += std::chrono::hours(11);
@@ -83,7 +83,7 @@ TEST(PlaceTime, YearsWithoutKnownPositionsAreRefused) {
   EXPECT_EQ(TextFromTime(new_year(2101) - std::chrono::seconds(1)), "2100-12-31T23:59:59Z");
 }
 
-TEST(SunInSky, IsTheSunOfTheLayerBelow) {
+TEST(SunInSky, EqualsTheSunOfTheLayerBelow) {
   const auto medium =
       atmosphere::OnOsculatingSphere(atmosphere::MediumPreset("earth"), 35.36 * kRadiansPerDegree);
   const auto place = Place{35.36, 138.73, 2500.0};
@@ -96,7 +96,7 @@ TEST(SunInSky, IsTheSunOfTheLayerBelow) {
   EXPECT_GT(sun.ToSun().up, sun.ToSunForAir().up);
 }
 
-TEST(MoonInSky, IsTheMoonOfTheLayerBelow) {
+TEST(MoonInSky, EqualsTheMoonOfTheLayerBelow) {
   const auto medium =
       atmosphere::OnOsculatingSphere(atmosphere::MediumPreset("earth"), 35.36 * kRadiansPerDegree);
   const auto expected = atmosphere::ApparentMoonAt(Place{35.36, 138.73, 2500.0},
@@ -108,7 +108,7 @@ TEST(MoonInSky, IsTheMoonOfTheLayerBelow) {
   EXPECT_EQ(moon.illuminated_fraction, expected.illuminated_fraction);
 }
 
-TEST(SunEventTime, IsThatOfTheLayerBelow) {
+TEST(SunEventTime, EqualsThatOfTheLayerBelow) {
   const auto noon = TimeFromText("2026-06-21T03:00:00Z");
   const std::optional<UtcTime> sunset = SunEventTime("sunset", kFuji, noon);
   const auto expected =
@@ -124,7 +124,7 @@ TEST(SunEventTime, UnknownNamesAndPlacesAreRefused) {
   EXPECT_THROW((void)SunAt({91.0, 0.0, 0.0}, {}), InputError);
 }
 
-TEST(DirectionFromAngles, CountsAzimuthFromNorthOverEast) {
+TEST(DirectionFromAngles, MeasuresAzimuthFromNorthOverEast) {
   const Direction east = DirectionFromAngles(0.0, 90.0);
   EXPECT_NEAR(east.east, 1.0, 1e-15);
   EXPECT_NEAR(east.north, 0.0, 1e-15);

@@ -47,7 +47,7 @@ double UncoveredByChords(const EclipsedDisk& disk, double wavelength_nm) {
   return IntegrateAdaptively(light_of_chord, 1, breaks, 1e-7).value[0];
 }
 
-TEST(Eclipse, LightThatPassesTheMoonIsThatOfAllChords) {
+TEST(Eclipse, UncoveredLightIsTheIntegralOverAllChords) {
   constexpr std::array kRadii{1.04, 1.0, 0.93};
   for (const double radius : std::span(kRadii).first(tests::ScaledDown<std::size_t>(3, 1))) {
     for (const double separation : {0.0, 0.02, 0.05, 0.3, 0.9, 1.0, 1.3, 1.9}) {
@@ -59,7 +59,7 @@ TEST(Eclipse, LightThatPassesTheMoonIsThatOfAllChords) {
   }
 }
 
-TEST(Eclipse, AllLightPassesBeforeItAndNoneWhenItIsTotal) {
+TEST(Eclipse, LightIsCompleteBeforeItAndAbsentInTotality) {
   EXPECT_EQ(UncoveredLight({1.04, 2.04}, kWavelength_nm), 1.0);
   EXPECT_EQ(UncoveredLight({1.04, 3.0}, kWavelength_nm), 1.0);
   EXPECT_EQ(UncoveredLight({1.04, 0.04}, kWavelength_nm), 0.0);
@@ -71,7 +71,7 @@ TEST(Eclipse, AllLightPassesBeforeItAndNoneWhenItIsTotal) {
   EXPECT_FALSE(EclipsedDisk({0.96, 0.0}).IsTotal()) << "annular";
 }
 
-TEST(Eclipse, LightFadesSmoothlyAndNeverBackwards) {
+TEST(Eclipse, LightFadesSmoothlyAndMonotonically) {
   double before = 1.0;
   for (double separation = 2.05; separation >= 0.0; separation -= 0.001) {
     const double now = UncoveredLight({1.04, separation}, kWavelength_nm);
@@ -83,7 +83,7 @@ TEST(Eclipse, LightFadesSmoothlyAndNeverBackwards) {
 }
 
 // Near second contact the rims enclose segments of any thinness.
-TEST(Eclipse, TheLastThreadOfLightIsKnownToAPartInTenThousand) {
+TEST(Eclipse, LastLightIsAccurateToOnePartInTenThousand) {
   constexpr double kRadius = 1.03;
   for (const double thread : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const EclipsedDisk disk{kRadius, kRadius - 1.0 + thread};
@@ -92,7 +92,7 @@ TEST(Eclipse, TheLastThreadOfLightIsKnownToAPartInTenThousand) {
   }
 }
 
-TEST(Eclipse, TheRedLimbIsTheLastToGo) {
+TEST(Eclipse, LastLightIsRed) {
   const EclipsedDisk thin{1.03, 0.08};
   EXPECT_GT(UncoveredLight(thin, 680.0), 1.2 * UncoveredLight(thin, 440.0))
       << "the limb is a third as bright as the centre in blue light, half in red";
@@ -101,7 +101,7 @@ TEST(Eclipse, TheRedLimbIsTheLastToGo) {
 }
 
 // The closed form is compared with points of a lattice on a disk without limb darkening.
-TEST(Eclipse, CoveredAreaIsTheLensOfTwoCircles) {
+TEST(Eclipse, CoveredAreaIsTheOverlapOfTwoCircles) {
   for (const EclipsedDisk disk : {EclipsedDisk{1.04, 0.5}, EclipsedDisk{0.95, 0.3},
                                   EclipsedDisk{1.0, 1.0}, EclipsedDisk{0.95, 0.01}}) {
     int of_sun = 0, of_both = 0;
@@ -222,7 +222,7 @@ const SolarEclipse& EclipseOf2026(std::size_t city) {
   return eclipses.at(city);
 }
 
-TEST(Eclipse, ContactsIn2026InSpainAreThoseOfNasaWithin5Seconds) {
+TEST(Eclipse, ContactsIn2026InSpainAgreeWithNasaWithin5Seconds) {
   double worst_s = 0.0;
   for (std::size_t i = 0; i < kCities.size(); ++i) {
     const SolarEclipse& eclipse = EclipseOf2026(i);
@@ -247,7 +247,7 @@ TEST(Eclipse, ContactsIn2026InSpainAreThoseOfNasaWithin5Seconds) {
   RecordProperty("worst_s", std::to_string(worst_s));
 }
 
-TEST(Eclipse, MomentsComeInTheirOrderAndTheMaximumIsTheDeepest) {
+TEST(Eclipse, MomentsAreInOrderAndTheMaximumIsDeepest) {
   for (std::size_t i = 0; i < kCities.size(); ++i) {
     const SolarEclipse& eclipse = EclipseOf2026(i);
     const auto after_s = [&](const SolarEclipse::Moment& moment) {
@@ -271,7 +271,7 @@ TEST(Eclipse, MomentsComeInTheirOrderAndTheMaximumIsTheDeepest) {
 }
 
 // The moon's shadow passes Cape Town by that day.
-TEST(Eclipse, IsNoneWhereTheShadowPassesByAndUnseenByNight) {
+TEST(Eclipse, IsAbsentOutsideTheShadowAndUnseenAtNight) {
   const UtcTime day = ParseInstant("2026-08-12T00:00:00Z");
   EXPECT_FALSE(FindSolarEclipse(Place{-33.9, 18.4, 0.0}, day, 86400.0));
   const SolarEclipse& in_madrid = EclipseOf2026(7);
@@ -281,7 +281,7 @@ TEST(Eclipse, IsNoneWhereTheShadowPassesByAndUnseenByNight) {
   EXPECT_FALSE(EclipseOf2026(6).last_contact.IsSeen()) << "and still earlier in Palma";
 }
 
-TEST(Eclipse, OtherNewMoonsOfTheYearPassTheSunBy) {
+TEST(Eclipse, OtherNewMoonsOfTheYearMissTheSun) {
   // The search has three days about each new moon, which are 29.53 days apart within 0.6 days.
   const Place burgos = PlaceOf(kCities[3]);
   int eclipses = 0;
@@ -298,7 +298,7 @@ TEST(Eclipse, OtherNewMoonsOfTheYearPassTheSunBy) {
 
 // Annular eclipse of 2023 October 14 in Albuquerque: a ring for 4 min 48 s (Espenak, NASA), near
 // the middle of the path.
-TEST(Eclipse, ARingStandsAroundTheMoonWhereItIsAnnular) {
+TEST(Eclipse, AnAnnularEclipseLeavesARing) {
   const auto eclipse = FindSolarEclipse(Place{35.0844, -106.6504, 1620.0},
                                         ParseInstant("2023-10-14T06:00:00Z"), 86400.0);
   ASSERT_TRUE(eclipse);

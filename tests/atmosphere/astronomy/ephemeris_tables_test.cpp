@@ -28,7 +28,7 @@ std::vector<TerrestrialTime> Times() {
 }
 
 // The bound of the header: 1e-9 au and rad are 150 m and 0.0002 arcseconds.
-TEST(EphemerisTables, EarthSunAndAxesAreThoseOfErfa) {
+TEST(EphemerisTables, EarthSunAndAxesAgreeWithErfa) {
   for (const TerrestrialTime& time : Times()) {
     double heliocentric[2][3], barycentric[2][3], axes[3][3];
     eraEpv00(time.day, time.part, heliocentric, barycentric);
@@ -47,7 +47,7 @@ TEST(EphemerisTables, EarthSunAndAxesAreThoseOfErfa) {
   }
 }
 
-TEST(EphemerisTables, TheMoonIsThatOfTheSeriesWithinAMetre) {
+TEST(EphemerisTables, TheMoonAgreesWithTheSeriesWithinAMetre) {
   for (const TerrestrialTime& time : Times()) {
     const BodyState table = TabulatedMoonFromEarth(time), series = MoonFromEarth(time);
     EXPECT_LT(glm::distance(table.position_au, series.position_au) * kAstronomicalUnit_m, 1.0)

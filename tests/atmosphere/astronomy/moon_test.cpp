@@ -38,7 +38,7 @@ double BrightLimb_rad(const MoonPosition& moon, const Place& place) {
 }
 
 // Meeus, Astronomical Algorithms, 2nd edition, examples 47.a and 48.a: 1992 April 12, 0h TD.
-TEST(Moon, ExampleOfMeeus) {
+TEST(Moon, AgreesWithTheExampleOfMeeus) {
   const MoonPosition moon = AtTerrestrial("1992-04-12T00:00:00Z");
   EXPECT_NEAR(moon.distance_m / 1e3, 368409.7, 20.0) << "of Meeus' selection of terms";
   const glm::dvec3 towards = EcefTowards(moon, kGeocentre).xyz;
@@ -58,7 +58,7 @@ TEST(Moon, ExampleOfMeeus) {
 }
 
 // Almanacs give the phases to the minute.
-TEST(Moon, IsFullAndNewWhenAlmanacsSay) {
+TEST(Moon, IsFullAndNewAtTheTimesOfAlmanacs) {
   // The total lunar eclipse of 2000 January 21 is greatest at 4:43:28 UT (Espenak, NASA).
   const MoonPosition eclipsed = TrueMoonAt(kGeocentre, ParseInstant("2000-01-21T04:43:28Z"));
   EXPECT_LT(eclipsed.phase_angle_deg, 0.5) << "gamma 0.2957 earth radii";
@@ -76,7 +76,7 @@ TEST(Moon, IsFullAndNewWhenAlmanacsSay) {
       << "the published magnitude";
 }
 
-TEST(Moon, StandsLowerOverTheHorizonThanFromTheCentreOfTheEarth) {
+TEST(Moon, ParallaxLowersItsElevation) {
   const UtcTime instant = ParseInstant("2026-06-21T20:00:00Z");
   const MoonPosition centre = TrueMoonAt(kGeocentre, instant);
   // One place has the moon in the geocentric zenith, the other is a quarter of the earth away.
@@ -92,7 +92,7 @@ TEST(Moon, StandsLowerOverTheHorizonThanFromTheCentreOfTheEarth) {
       << "the horizontal parallax, about a degree";
 }
 
-TEST(Moon, RefractionLiftsItAsItLiftsTheSun) {
+TEST(Moon, RefractionLiftsItLikeTheSun) {
   const Place place{46.5, 8.0, 500.0};
   const UtcTime instant = ParseInstant("2026-06-21T20:00:00Z");
   const MoonPosition bare = TrueMoonAt(place, instant),
@@ -103,7 +103,7 @@ TEST(Moon, RefractionLiftsItAsItLiftsTheSun) {
   EXPECT_EQ(seen.azimuth_deg, bare.azimuth_deg);
 }
 
-TEST(Moon, ItsBrightLimbPointsToTheSun) {
+TEST(Moon, BrightLimbPointsToTheSun) {
   const Place place{46.5, 8.0, 0.0};
   for (const char* utc : {"2026-06-18T19:00:00Z", "2026-06-25T19:00:00Z", "2026-07-07T04:00:00Z"}) {
     const UtcTime instant = ParseInstant(utc);
@@ -120,7 +120,7 @@ TEST(Moon, ItsBrightLimbPointsToTheSun) {
   }
 }
 
-TEST(Moon, RisesAndSetsWhereItsUpperLimbMeetsTheHorizon) {
+TEST(Moon, RisesAndSetsWithItsUpperLimbOnTheHorizon) {
   const Place place{46.5, 8.0, 1200.0};
   UtcTime instant = ParseInstant("2026-06-01T00:00:00Z");
   const double horizon =
@@ -177,7 +177,7 @@ constexpr std::array<KnownPlace, 6> kOfAllTerms{{
     {2488033.5, {301000.3, 230039.9, 128293.1}},
 }};
 
-TEST(MoonOrbit, TermsLeftOutMoveItByLessThanAnArcsecond) {
+TEST(MoonOrbit, OmittedTermsMoveItByLessThanAnArcsecond) {
   for (const auto& [day, all_km] : kOfAllTerms) {
     const glm::dvec3 here_km = Kilometres({day, 0.0});
     EXPECT_LT(Angle(here_km, all_km), 0.6 * kArcsecond) << day;
@@ -186,7 +186,7 @@ TEST(MoonOrbit, TermsLeftOutMoveItByLessThanAnArcsecond) {
 }
 
 // JPL Horizons, DE441: geometric, ICRF, 2022 December 25, 0h TDB.
-TEST(MoonOrbit, StandsWhereTheJetPropulsionLaboratoryHasIt) {
+TEST(MoonOrbit, AgreesWithTheJetPropulsionLaboratory) {
   const glm::dvec3 horizons_au{1.013355885727306e-3, -1.903485709903833e-3, -1.047798412089101e-3};
   const BodyState moon = MoonFromEarth({2459938.5, 0.0});
   EXPECT_LT(Angle(moon.position_au, horizons_au), 0.6 * kArcsecond);
@@ -214,7 +214,7 @@ TEST(MoonOrbit, AgreesWithErfaWithinTwentyArcseconds) {
   EXPECT_LT(std::sqrt(square), 6.0 * kArcsecond);
 }
 
-TEST(MoonOrbit, ADayAndItsPartAreOneTime) {
+TEST(MoonOrbit, SplitDatesGiveTheSamePosition) {
   EXPECT_LT(glm::length(Kilometres({2461265.0, 0.25}) - Kilometres({2461265.25, 0.0})), 1e-3);
   const BodyState moon = MoonFromEarth({2461265.0, 0.25});
   const glm::dvec3 later = MoonFromEarth({2461265.0, 0.26}).position_au;
@@ -255,13 +255,13 @@ double Light(const MoonDisk& moon) {
   return sum * kStep * kStep * 0.0045 * 0.0045;
 }
 
-TEST(MoonDisk, FullMoonIsAThirdOfALux) {
+TEST(MoonDisk, FullMoonGivesAThirdOfALux) {
   const double lux = 133e3 * Light(AtPhase(5.0));  // of the sun outside the air: 133,000 lux
   EXPECT_NEAR(lux, 0.32 * std::pow(10.0, -0.4 * 0.13), 0.02)
       << "V = -12.73 + 0.026 a, where 1 lux is -13.98 (Allen)";
 }
 
-TEST(MoonDisk, ItsLightFallsWithThePhaseAsOthersMeasured) {
+TEST(MoonDisk, LightFallsWithPhaseAsMeasured) {
   for (const double degrees : {7.0, 10.0, 30.0, 45.0, 90.0, 120.0, 145.0}) {
     const double magnitudes = 3.84 + 0.026 * degrees + 4e-9 * std::pow(degrees, 4.0);
     const double lux = 10.764 * std::pow(10.0, -0.4 * magnitudes);  // from foot-candles
@@ -271,26 +271,26 @@ TEST(MoonDisk, ItsLightFallsWithThePhaseAsOthersMeasured) {
   EXPECT_NEAR(Light(AtPhase(90.0)) / Light(AtPhase(3.0)), 0.088, 0.01) << "a tenth, at half moon";
 }
 
-TEST(MoonDisk, SurgesAtOpposition) {
+TEST(MoonDisk, BrightensStronglyAtOpposition) {
   const double steady = Light(AtPhase(10.0)) * std::pow(10.0, 0.4 * 0.026 * 8.5);
   EXPECT_GT(Light(AtPhase(1.5)) / steady, 1.1);
   EXPECT_LT(Light(AtPhase(1.5)) / steady, 1.35)
       << "up to 35 %: Krisciunas and Schaefer (1991), section 3";
 }
 
-TEST(MoonDisk, ItsLightIsThatOfItsRadiance) {
+TEST(MoonDisk, IrradianceIsTheIntegralOfItsRadiance) {
   const MoonPosition moon = PositionAtPhase(1.0, 1.01);
   EXPECT_NEAR(Light(DiskOf(moon)) / MoonIrradiance(moon, 1.0, 550.0), 1.0, 0.005)
       << "the sum over the disk is coarse, and earthshine is not in the light: 0.0003";
 }
 
-TEST(MoonDisk, ItsLightIsRedderThanTheSuns) {
+TEST(MoonDisk, LightIsRedderThanSunlight) {
   const MoonPosition moon = PositionAtPhase(0.1);
   EXPECT_NEAR(MoonIrradiance(moon, 1.0, 650.0) / MoonIrradiance(moon, 1.0, 450.0), 1.4, 0.1)
       << "B - V of the moon 0.92, of the sun 0.65 (Allen): 1.28 from 440 to 550 nm";
 }
 
-TEST(MoonDisk, TheDarkSideOfACrescentIsLitByTheEarth) {
+TEST(MoonDisk, EarthLightsTheDarkSideOfACrescent) {
   const MoonDisk crescent = AtPhase(150.0);
   const double luminance = 133e3 * MoonRadiance(crescent, Beside(0.0, 0.0));
   EXPECT_GT(luminance, 0.3) << "12 to 13 magnitudes below full sunlight, 5000 cd/m^2:";
@@ -300,7 +300,7 @@ TEST(MoonDisk, TheDarkSideOfACrescentIsLitByTheEarth) {
       << "gone by full moon";
 }
 
-TEST(MoonDisk, IsLitOnTheSideOfTheSunAndDarkOnTheOther) {
+TEST(MoonDisk, IsLitOnlyOnTheSideOfTheSun) {
   const MoonDisk half = AtPhase(90.0);
   EXPECT_GT(MoonRadiance(half, Beside(0.0, 0.5)), 100.0 * half.earthshine_per_irradiance);
   EXPECT_EQ(MoonRadiance(half, Beside(0.0, -0.5)), half.earthshine_per_irradiance);
@@ -312,14 +312,14 @@ TEST(MoonDisk, IsLitOnTheSideOfTheSunAndDarkOnTheOther) {
       << "its edge is at cos 30 = 0.87";
 }
 
-TEST(MoonDisk, EndsAtItsLimb) {
+TEST(MoonDisk, IsDarkBeyondItsLimb) {
   const MoonDisk full = AtPhase(0.0);
   EXPECT_GT(MoonRadiance(full, Beside(0.0, 0.99)), 0.0);
   EXPECT_EQ(MoonRadiance(full, Beside(0.0, 1.01)), 0.0);
   EXPECT_EQ(MoonRadiance(full, -Beside(0.0, 0.0)), 0.0) << "behind the eye";
 }
 
-TEST(MoonDisk, NewMoonSendsNothingButEarthshine) {
+TEST(MoonDisk, NewMoonHasOnlyEarthshine) {
   const double full = Light(AtPhase(0.0));
   EXPECT_NEAR(Light(AtPhase(180.0)) / full, 1.0e-4, 0.1e-4) << "0.37 (6371 / 384400)^2";
   EXPECT_TRUE(std::isfinite(AtPhase(180.0).radiance_per_irradiance));

@@ -15,7 +15,7 @@ namespace {
 
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
 
-TEST(NightSky, AirglowIsLongerTheLowerOneLooksAndEndsAboveItsLayer) {
+TEST(NightSky, AirglowGrowsTowardsTheHorizonAndEndsAboveItsLayer) {
   EXPECT_DOUBLE_EQ(VanRhijn(0.0), 1.0);
   EXPECT_NEAR(VanRhijn(std::sin(Radians(40.0))), 1.29, 0.01) << "a plane layer would have 1.305";
   EXPECT_NEAR(VanRhijn(1.0), 6.04, 0.05) << "at the horizon sqrt(R / 2h) = 5.95, and a little";
@@ -25,7 +25,7 @@ TEST(NightSky, AirglowIsLongerTheLowerOneLooksAndEndsAboveItsLayer) {
   EXPECT_EQ(sky.Towards(up, up, 400e3).airglow_cd_per_m2, 0.0);
 }
 
-TEST(NightSky, ZodiacalLightIsThatOfTheTable) {
+TEST(NightSky, ZodiacalLightAgreesWithTheTable) {
   EXPECT_NEAR(ZodiacalLight(Radians(90.0), 0.0), 259e-8, 1e-12);
   EXPECT_NEAR(ZodiacalLight(Radians(-90.0), Radians(-30.0)), 132e-8, 1e-12) << "even both ways";
   EXPECT_NEAR(ZodiacalLight(Radians(1.0), Radians(90.0)), 77e-8, 1e-12);
@@ -36,7 +36,7 @@ TEST(NightSky, ZodiacalLightIsThatOfTheTable) {
       << "the gegenschein";
 }
 
-TEST(NightSky, TheMilkyWayIsBrightTowardsItsCentreAndSplitByDust) {
+TEST(NightSky, MilkyWayIsBrightAtItsCentreAndSplitByDust) {
   const double pole = Starlight(0.0, Radians(90.0));
   EXPECT_GT(pole, 15.0) << "25 to 30 S10 at the poles (Roach, Megill 1961)";
   EXPECT_LT(pole, 40.0);
@@ -65,7 +65,7 @@ TEST(NightSky, TheCentreOfTheGalaxyCulminatesOnJuneNights) {
   EXPECT_NEAR(hour_of_brightest, 11.75, 1.5) << "after noon: midnight has 18h of sidereal time";
 }
 
-TEST(NightSky, ASkyOfAHigherBortleClassIsBrighter) {
+TEST(NightSky, HigherBortleClassesAreBrighter) {
   EXPECT_EQ(ZenithOfBortleClass(1), kNaturalZenith);
   EXPECT_EQ(ZenithOfBortleClass(2), kNaturalZenith);
   for (int higher = 3; higher <= 9; ++higher)
@@ -82,7 +82,7 @@ double Declination(const Vector<Ecef>& direction) {
   return std::asin(direction.xyz.z) / kRadiansPerDegree;
 }
 
-TEST(Stars, AreFiveThousandToTheSixthMagnitudeBrightestFirst) {
+TEST(Stars, Are5000ToMagnitudeSixBrightestFirst) {
   const auto stars = StarsAt(ParseInstant("2026-01-01T00:00:00Z"));
   EXPECT_EQ(stars.size(), 5080U);
   EXPECT_DOUBLE_EQ(stars.front().magnitude, -1.46) << "Sirius";
@@ -90,7 +90,7 @@ TEST(Stars, AreFiveThousandToTheSixthMagnitudeBrightestFirst) {
   EXPECT_EQ(StarsAt(ParseInstant("2026-01-01T00:00:00Z"), 1.0).size(), 15U);
 }
 
-TEST(Stars, SiriusHasMovedAndTheEarthHasTurned) {
+TEST(Stars, SiriusFollowsProperMotionAndEarthRotation) {
   // The declination of Sirius is -16 42.97' in 2000, with -1.2 arcseconds a year of proper motion
   // and -3.9 by precession, 20.04 times the cosine of the right ascension.
   const auto then = StarsAt(ParseInstant("2000-01-01T12:00:00Z")).front();
@@ -112,14 +112,14 @@ TEST(Stars, TheBeltOfOrionPointsAtSirius) {
   EXPECT_NEAR(AngleBetween(betelgeuse, stars.front().direction), 27.1, 0.1);
 }
 
-TEST(Stars, LightAndColourAreThoseOfTheirMagnitudes) {
+TEST(Stars, LightAndColourFollowFromMagnitudes) {
   EXPECT_NEAR(IlluminanceOf(-1.46), 9.7e-6, 0.1e-6);
   EXPECT_DOUBLE_EQ(MagnitudeOf(IlluminanceOf(3.5)), 3.5);
   EXPECT_NEAR(TemperatureOf(0.65), 5770.0, 60.0) << "the sun";
   EXPECT_NEAR(TemperatureOf(0.0), 10100.0, 300.0) << "Vega, a black body of 9,600 to 10,100 K";
 }
 
-TEST(Planets, StandOnTheEclipticAsBrightAsAlmanacsSay) {
+TEST(Planets, LieOnTheEclipticWithMagnitudesOfAlmanacs) {
   const Place place = PlaceFromRadians(0.8, 0.0, 0.0);
   // Jupiter is in opposition on 2026 January 10 in Gemini, V = -2.7; Saturn has V = 1.2 in Pisces.
   const auto planets = PlanetsAt(place, ParseInstant("2026-01-10T00:00:00Z"));

@@ -57,12 +57,12 @@ TEST_F(CsvFile, QuotesAndLineEndsOfEveryProgramAreRead) {
   EXPECT_THAT(LinesOf("t_s,name\n1,\"say \"\"a, b\"\"\"\n"), ElementsAre("1 say \"a, b\" 0"));
 }
 
-TEST_F(CsvFile, CommentsEndALineOutsideQuotes) {
+TEST_F(CsvFile, CommentsBeginOutsideQuotes) {
   EXPECT_THAT(LinesOf("# flight, of today\n\nt_s;name # a, b\n0;\"a # b\" # c\n\n", true),
               ElementsAre("0 a # b 0"));
 }
 
-TEST_F(CsvFile, FaultsNameLineAndField) {
+TEST_F(CsvFile, MessagesNameLineAndField) {
   EXPECT_THAT(FaultOf("t_s,name\n0,\"a\n"), HasSubstr("a.csv:2: has a quote that is not closed"));
   EXPECT_THAT(FaultOf("t_s,name\n0,\"a\"b\n"), HasSubstr("a.csv:2: has text behind a closing"));
   EXPECT_THAT(FaultOf("t_s;name\n0,5;a\n"),

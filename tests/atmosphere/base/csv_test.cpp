@@ -14,7 +14,7 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(Csv, FieldsMayStandInQuotesWithSeparatorsAndQuotes) {
+TEST(Csv, QuotedFieldsMayContainSeparatorsAndQuotes) {
   EXPECT_THAT(SplitCsv("a,b , c").fields, ElementsAre("a", "b", "c"));
   EXPECT_THAT(SplitCsv(R"("a","b, c" , "say ""no""" )").fields,
               ElementsAre("a", "b, c", R"(say "no")"));
@@ -22,7 +22,7 @@ TEST(Csv, FieldsMayStandInQuotesWithSeparatorsAndQuotes) {
   EXPECT_THAT(SplitCsv("").fields, ElementsAre(""));
 }
 
-TEST(Csv, FieldsOutliveTheMoveOfTheirRecord) {
+TEST(Csv, FieldsStayValidWhenTheRecordIsMoved) {
   const std::string line = R"("a""b","c")";
   CsvRecord first = SplitCsv(line);
   const CsvRecord second = std::move(first);
@@ -36,14 +36,14 @@ TEST(Csv, CommentsBeginOutsideQuotes) {
   EXPECT_THAT(SplitCsv("a # b").fields, ElementsAre("a # b"));
 }
 
-TEST(Csv, OpenQuotesAndTextBehindQuotesAreFaults) {
+TEST(Csv, OpenQuotesAndTextAfterQuotesAreErrors) {
   EXPECT_EQ(SplitCsv("a,\"b").fault, "has a quote that is not closed on its line");
   EXPECT_EQ(SplitCsv("\"a\"\"").fault, "has a quote that is not closed on its line");
   EXPECT_EQ(SplitCsv("\"a\"b,c").fault, "has text behind a closing quote");
   EXPECT_EQ(SplitCsv("a\"b\",c").fault, "") << "a quote within plain text has no meaning";
 }
 
-TEST(Csv, HeadersShowTheirSeparator) {
+TEST(Csv, SeparatorIsRecognisedInTheHeader) {
   EXPECT_EQ(SeparatorOf("a,b"), ',');
   EXPECT_EQ(SeparatorOf("a;b"), ';');
   EXPECT_EQ(SeparatorOf("a\tb"), '\t');
@@ -53,7 +53,7 @@ TEST(Csv, HeadersShowTheirSeparator) {
   EXPECT_THAT(SplitCsv("1\t\t2", {.separator = '\t'}).fields, ElementsAre("1", "", "2"));
 }
 
-TEST(Csv, RowsOfATableFollowItsNames) {
+TEST(Csv, RowsFollowTheNamesOfColumns) {
   std::vector<std::string> seen;
   const auto visit = [&](const CsvRecord& row) { seen.emplace_back(row.fields.at(1)); };
   VisitCsvRows("# source\na,b\n1,2\r\n\n# more\n3,\"4\"", visit);

@@ -28,7 +28,7 @@ std::string NameOf(std::string_view bytes) {
   return format ? format->name : "none";
 }
 
-TEST(FileFormat, FirstBytesShowIt) {
+TEST(FileFormat, IsRecognisedByItsFirstBytes) {
   for (const auto& [bytes, name] : {std::pair{"PK\x03\x04\x14"sv, "zip"},
                                     {"\x1F\x8B\x08"sv, "gzip"},
                                     {"BZh9"sv, "bzip2"},
@@ -72,7 +72,7 @@ TEST(FileFormat, XmlIsNamedByItsRootAndJsonByItsKeys) {
   }
 }
 
-TEST(FileFormat, WhatReadersReadIsNoKnownFormat) {
+TEST(FileFormat, SupportedFormatsAreNotReportedAsForeign) {
   for (const std::string_view bytes :
        {""sv, "t_s,latitude\n0,1"sv, "[place]\nlatitude = 1"sv, "[[volume]]\n"sv, "# comment"sv,
         "o cube\nv 0 0 0"sv, "solid = true\n"sv, "# using WEBP files"sv, "# flight.FIT exported"sv,
@@ -81,7 +81,7 @@ TEST(FileFormat, WhatReadersReadIsNoKnownFormat) {
   }
 }
 
-TEST(FileFormat, ABinaryStlStatesItsNumberOfTriangles) {
+TEST(FileFormat, BinaryStlIsRecognisedByItsNumberOfTriangles) {
   std::string bytes(80, 's');
   bytes += "\x02\0\0\0"sv;
   bytes.resize(84 + 2 * 50);
@@ -89,7 +89,7 @@ TEST(FileFormat, ABinaryStlStatesItsNumberOfTriangles) {
   EXPECT_EQ(NameOf(bytes + 'x'), "none") << "the size must fit";
 }
 
-TEST_F(FileFormats, MessagesNameFormatAndWayOut) {
+TEST_F(FileFormats, MessagesNameTheFormatAndASolution) {
   WriteText(folder_ / "a.kmz", "PK\x03\x04 and so on");
   EXPECT_THAT(
       tests::FaultOf([&] { return ReadTextFile(folder_ / "a.kmz"); }),
@@ -124,7 +124,7 @@ TEST(Printable, ControlCharactersAndBrokenTextAreEscaped) {
   EXPECT_EQ(Printable("a\nb\tc", "\n"), "a\nb\\x09c");
 }
 
-TEST(Printable, MessagesOfExceptionsAreWhole) {
+TEST(Printable, MessagesOfExceptionsAreComplete) {
   const std::string text("one\0two\x1B", 8);
   EXPECT_STREQ(InputError(text).what(), R"(one\x00two\x1b)");
   EXPECT_STREQ(OutputError(text).what(), R"(one\x00two\x1b)");

@@ -9,7 +9,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-TEST(NearestName, IsNearRelativeToTheLengthOfTheWord) {
+TEST(NearestName, AllowsErrorsByTheLengthOfTheWord) {
   const std::vector<std::string> known{"heading", "size", "K2", "KDEN", "eval", "Köln"};
   EXPECT_EQ(NearestName("headin", known), "heading");
   EXPECT_EQ(NearestName("haeding", known), "heading");

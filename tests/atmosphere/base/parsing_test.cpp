@@ -7,7 +7,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-TEST(FileExtension, IsTheSameInWhateverCase) {
+TEST(FileExtension, IgnoresCase) {
   for (const char* name : {"track.gpx", "folder.d/TRACK.GPX", "a.b.GpX"}) {
     EXPECT_TRUE(HasExtension(name, ".gpx")) << name;
   }
@@ -17,7 +17,7 @@ TEST(FileExtension, IsTheSameInWhateverCase) {
   EXPECT_TRUE(HasExtension("none", ""));
 }
 
-TEST(Numbers, AreReadWholeWithPointAndSign) {
+TEST(Numbers, AreParsedCompletelyWithPointAndSign) {
   EXPECT_EQ(ParseNumber("-1.5e3"), -1500.0);
   EXPECT_EQ(ParseNumber("+10"), 10.0);
   EXPECT_EQ(ParseWholeNumber("+7"), 7);

@@ -11,7 +11,7 @@ namespace {
 
 using tests::FaultOf;
 
-TEST(TextFile, FilesThatCannotBeReadAreNamed) {
+TEST(TextFile, UnreadableFilesAreNamed) {
   EXPECT_THAT(FaultOf([] { (void)ReadTextFile("/no/such/file.toml"); }),
               testing::HasSubstr("/no/such/file.toml: cannot be read"));
   EXPECT_NE(FaultOf([] { (void)ReadTextFile("/"); }), "no fault");

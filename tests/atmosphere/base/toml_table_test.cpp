@@ -19,7 +19,7 @@ TomlTable Camera(const std::string& line) {
   return *TomlTable("[camera]\n" + line + "\n", "s.toml").Table("camera");
 }
 
-TEST(TomlTable, ReadsNumbersTextsTruthsAndTables) {
+TEST(TomlTable, ReadsNumbersTextsBooleansAndTables) {
   const TomlTable document(
       "a = 3\nb = [1, 2.5]\nc = \"text\"\nd = true\n[e]\nf = -1e-3\n[[g]]\nh = 1\n[[g]]\nh = 2\n",
       "s.toml");
@@ -40,7 +40,7 @@ TEST(TomlTable, MessageNamesFileLineKeyValueAndRange) {
             "s.toml:2: camera.fov is 400; it must lie in [0.1, 360]");
 }
 
-TEST(TomlTable, NumbersThatAreNoneAreRefused) {
+TEST(TomlTable, InvalidNumbersAreRefused) {
   for (const char* value : {"nan", "inf", "-inf", "1e999", "\"46d33N\"", "true", "[1]"}) {
     EXPECT_NE(
         FaultOf([&] { (void)Camera(std::string("fov = ") + value).Number("fov", -1e300, 1e300); }),
@@ -79,7 +79,7 @@ TEST(TomlTable, AnUnknownKeyIsRefusedWithTheNearestKnownOne) {
   EXPECT_EQ(fault("pitch = 3"), "no fault");
 }
 
-TEST(TomlTable, WhatIsNoTomlIsRefusedWithItsLine) {
+TEST(TomlTable, InvalidTomlIsRefusedWithItsLine) {
   const std::string deep = "a = " + std::string(5000, '[') + std::string(5000, ']');
   const std::string utf16(
       "a\0=\0"
@@ -105,7 +105,7 @@ TEST(TomlTable, KeysDeeperThanTheStackAreRefused) {
   }
 }
 
-TEST(TomlTable, AByteOrderMarkAndAnEmptyDocumentAreToml) {
+TEST(TomlTable, AByteOrderMarkAndAnEmptyDocumentAreAccepted) {
   EXPECT_EQ(TomlTable("\xef\xbb\xbf"
                       "a = 1\n",
                       "s.toml")

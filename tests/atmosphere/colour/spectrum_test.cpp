@@ -51,7 +51,7 @@ TEST(SampledFunction, IsLinearBetweenItsPointsAndConstantBeyond) {
   EXPECT_THROW((void)f.Mean(2.0, 2.0), InternalError);
 }
 
-TEST(Tables, EveryByteIsAsItWasChecked) {
+TEST(Tables, HaveTheirRecordedChecksums) {
   const std::pair<const char*, std::uint64_t> files[] = {
       {"atmosphere/data/band_matrices.csv", 0x2e6aae7fb50edaa8U},
       {"atmosphere/data/cie1931_2deg_cmf_5nm.csv", 0x6ba6801c7c9a2b4aU},
@@ -95,7 +95,7 @@ double ScotopicOverPhotopic(double temperature_k) {
   return scotopic / photopic;
 }
 
-TEST(Tables, RodsSeeIlluminantAAsThePublishedRatioSays) {
+TEST(Tables, ScotopicRatioOfIlluminantAIsThePublishedOne) {
   EXPECT_NEAR(ScotopicOverPhotopic(2856.0), 1.41, 0.01) << "published to two decimals";
   EXPECT_GT(ScotopicOverPhotopic(6504.0), 2.2) << "daylight is rich in what rods see";
   EXPECT_NEAR(ScotopicEfficiency(555.0) * kScotopicEfficacy_lm_per_W, kLuminousEfficacy_lm_per_W,
@@ -105,7 +105,7 @@ TEST(Tables, RodsSeeIlluminantAAsThePublishedRatioSays) {
   EXPECT_EQ(ScotopicEfficiency(781.0), 0.0);
 }
 
-TEST(Tables, SunlightAboveTheAirHasTheIlluminanceOfTheLiterature) {
+TEST(Tables, SunlightInSpaceHasThePublishedIlluminance) {
   double lux = 0.0;
   for (double at = 360.25; at < 830.0; at += 0.5) {
     lux += kLuminousEfficacy_lm_per_W * SolarTable()(at) * ColourMatching(at)[1] * 0.5;
@@ -135,7 +135,7 @@ std::vector<std::vector<double>> RowsOf(std::string_view name) {
   return rows;
 }
 
-TEST(Rayleigh, CoefficientIsTheOneOfIndexAndDepolarisation) {
+TEST(Rayleigh, CoefficientFollowsFromIndexAndDepolarisation) {
   const auto rows = RowsOf("atmosphere/data/rayleigh_10nm.csv");
   ASSERT_EQ(rows.size(), 48U);
   for (const auto& row : rows) {
@@ -157,7 +157,7 @@ TEST(Ozone, CrossSectionPeaksInTheChappuisBandAndVanishesWithoutData) {
   EXPECT_EQ(OzoneCrossSection(850.0), 0.0);
 }
 
-TEST(Ozone, InstrumentsAgreeOnTheCrossSectionWhereItMatters) {
+TEST(Ozone, CrossSectionAgreesBetweenInstruments) {
   for (const auto& row : RowsOf("atmosphere/data/ozone_cross_section_10nm.csv")) {
     if (row[0] < 500.0 || row[0] > 680.0) continue;
     EXPECT_NEAR(OzoneCrossSection(row[0] + 5.0), row[4], 0.08 * row[4])
@@ -165,7 +165,7 @@ TEST(Ozone, InstrumentsAgreeOnTheCrossSectionWhereItMatters) {
   }
 }
 
-TEST(Wavelengths, SetsHaveTheirSizesAndAscend) {
+TEST(Wavelengths, SetsHaveTheirSizeAndAscend) {
   for (const int bands : kWavelengthSetSizes) {
     const std::vector<double> set = WavelengthSet(bands);
     EXPECT_EQ(set.size(), static_cast<std::size_t>(bands));
@@ -176,7 +176,7 @@ TEST(Wavelengths, SetsHaveTheirSizesAndAscend) {
   EXPECT_THROW((void)WavelengthSet(7), InputError);
 }
 
-TEST(Srgb, MatrixIsTheOneOfTheStandardAndHasItsInverse) {
+TEST(Srgb, MatrixIsThatOfTheStandardAndHasItsInverse) {
   const Matrix3 published{{{0.4123907993, 0.3575843394, 0.1804807884},
                            {0.2126390059, 0.7151686788, 0.0721923154},
                            {0.0193308187, 0.1191947798, 0.9505321522}}};
@@ -416,7 +416,7 @@ TEST(BandColour, ScotopicLuminanceIsWithinTheBoundsInItsHeader) {
   }
 }
 
-TEST(BandColour, SunAboveTheAirHasTheSameColourOnEveryWavelengthSet) {
+TEST(BandColour, SunInSpaceHasOneColourOnEveryWavelengthSet) {
   const Triple sun = TrueXyz(SampledFunction({360.0}, {1.0}));
   std::vector<std::vector<double>> sets{
       {440.0, 550.0, 680.0}, {550.0}, {430.0, 500.0, 530.0, 610.0, 670.0}};
@@ -427,7 +427,7 @@ TEST(BandColour, SunAboveTheAirHasTheSameColourOnEveryWavelengthSet) {
 }
 
 // Hard case 36.
-TEST(BandColour, WhiteOfPaperByDayIsWithinTwoPercentInEverySet) {
+TEST(BandColour, PaperInDaylightIsWithinTwoPercentInEverySet) {
   // The sun at 30 degrees shines through the default air on white paper.
   const std::vector<double> relative = reference::SunIrradiance(
       MediumPreset("earth", TestWavelengths()), 10.0, std::sin(30.0 * kRadiansPerDegree));
@@ -442,7 +442,7 @@ TEST(BandColour, WhiteOfPaperByDayIsWithinTwoPercentInEverySet) {
   }
 }
 
-TEST(BandColour, IsLinearAndItsMatrixIsItsMap) {
+TEST(BandColour, IsLinearAndAgreesWithItsMatrix) {
   const BandColour colour(WavelengthSet(4));
   const std::vector<double> radiance{0.1, 0.7, 0.3, 0.2};
   const Triple rgb = colour.LinearSrgb(radiance);
@@ -460,7 +460,7 @@ TEST(BandColour, IsLinearAndItsMatrixIsItsMap) {
   EXPECT_THROW(BandColour({500.0, 400.0}), InternalError);
 }
 
-TEST(BandColour, StaysFiniteWithBandsThatHardlySee) {
+TEST(BandColour, StaysFiniteForBandsOfLittleLuminance) {
   for (const auto& set : {std::vector<double>{200.0}, std::vector<double>{1000.0, 4000.0},
                           std::vector<double>{550.0, 550.001, 550.002, 550.003}}) {
     const BandColour colour(set);
@@ -488,7 +488,7 @@ Triple ColourUnderEqualEnergy(const Triple& rgb) {
   return LinearSrgbFromXyz() * xyz;
 }
 
-TEST(Albedo, HasTheColourItWasMadeFrom) {
+TEST(Albedo, HasTheColourFromWhichItWasMade) {
   for (const Triple& rgb : {Triple{0.5, 0.5, 0.5}, Triple{0.2, 0.4, 0.1}, Triple{0.6, 0.3, 0.2},
                             Triple{0.1, 0.2, 0.5}, Triple{1.0, 1.0, 1.0}, Triple{0.0, 0.0, 0.0}}) {
     EXPECT_TRUE(tests::BandsNear(ColourUnderEqualEnergy(rgb), rgb, 0.0, 1e-9));
@@ -497,7 +497,7 @@ TEST(Albedo, HasTheColourItWasMadeFrom) {
     EXPECT_NEAR(value, 0.3, 1e-12) << "grey is flat";
 }
 
-TEST(Albedo, OfAPrimaryIsNearItAndStaysAnAlbedo) {
+TEST(Albedo, OfAPrimaryIsNearItAndAtMostOne) {
   for (std::size_t primary = 0; primary < 3; ++primary) {
     Triple rgb{};
     rgb[primary] = 1.0;
@@ -509,7 +509,7 @@ TEST(Albedo, OfAPrimaryIsNearItAndStaysAnAlbedo) {
   }
 }
 
-TEST(Water, IsClearestInTheVioletAsPopeAndFryFound) {
+TEST(Water, IsClearestInTheVioletAsMeasuredByPopeAndFry) {
   double clearest_nm = 380.0;
   for (double nm = 380.0; nm <= 750.0; nm += 1.0) {
     if (WaterAbsorption(nm) < WaterAbsorption(clearest_nm)) clearest_nm = nm;

@@ -73,7 +73,7 @@ ErrorsOfSixteen Measure(double g, double scale_height_m, int cases) {
   return {std::sqrt(squares / cases), most};
 }
 
-TEST(Airlight, SixteenSamplesKeepAThousandth) {
+TEST(Airlight, SixteenSamplesAreAccurateToAThousandth) {
   for (const double g : {0.0, 0.8, 0.95}) {
     const ErrorsOfSixteen errors = Measure(g, kInfinite, 400);
     EXPECT_LT(errors.rms, 2e-4) << "g " << g;
@@ -86,7 +86,7 @@ TEST(Airlight, SixteenSamplesKeepAThousandth) {
   }
 }
 
-TEST(Airlight, AgreesWithTheStoredCasesBySamplesAndByReference) {
+TEST(Airlight, SamplesAndReferenceAgreeWithStoredCases) {
   const auto cases = stored::LampCases();
   EXPECT_EQ(cases.size(), 50U);
   for (const auto& [id, air, lamp, segment, radiance] : cases) {
@@ -98,7 +98,7 @@ TEST(Airlight, AgreesWithTheStoredCasesBySamplesAndByReference) {
   }
 }
 
-TEST(AirlightReference, TheThinLimitIsTheAngleThatTheSegmentFills) {
+TEST(AirlightReference, InThinAirIsTheAngleOfTheSegment) {
   // Without extinction and for isotropic scattering the integral is sigma / (4 pi D) times the
   // angle under which the lamp sees the segment.
   const LampAir air = HomogeneousAir(1e-12, 1e-12, HenyeyGreenstein(0.0));
@@ -109,7 +109,7 @@ TEST(AirlightReference, TheThinLimitIsTheAngleThatTheSegmentFills) {
 }
 
 // Hard case 42.
-TEST(Airlight, TheRayThroughTheLampIsFiniteAndRight) {
+TEST(Airlight, OfARayThroughTheLampIsFiniteAndRight) {
   const LampAir air = HomogeneousAir(0.02, 0.02, HenyeyGreenstein(0.8));
   Lamp lamp = LampAt({40.0, 0.0, 0.0});
   lamp.radius_m = 0.1;
@@ -124,7 +124,7 @@ TEST(Airlight, TheRayThroughTheLampIsFiniteAndRight) {
 }
 
 // Hard case 42.
-TEST(Airlight, ALampAtTheEyeBehindItAndBeyondTheEndIsFiniteAndRight) {
+TEST(Airlight, OfLampsAtAndBehindTheEyeIsFiniteAndRight) {
   const LampAir air = HomogeneousAir(0.01, 0.012, HenyeyGreenstein(0.7));
   const LampSegment ahead = Along({1.0, 0.0, 0.0}, 50.0);
   Lamp lamp = LampAt({0.0, 0.0, 0.0});
@@ -137,7 +137,7 @@ TEST(Airlight, ALampAtTheEyeBehindItAndBeyondTheEndIsFiniteAndRight) {
 }
 
 // Hard case 14.
-TEST(Airlight, ASegmentOfLengthZeroHasNoneAndAShortOneInProportion) {
+TEST(Airlight, IsProportionalToTheLengthOfShortSegments) {
   const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.5));
   const Lamp lamp = LampAt({3.0, 1.0, 0.0});
   EXPECT_EQ(Airlight(air, lamp, Along({1.0, 0.0, 0.0}, 0.0))[0], 0.0);
@@ -146,7 +146,7 @@ TEST(Airlight, ASegmentOfLengthZeroHasNoneAndAShortOneInProportion) {
   EXPECT_NEAR(metre / half, 2.0, 1e-3) << "the source changes by 1e-3 over a millimetre";
 }
 
-TEST(Airlight, PiecesOfARaySumToTheWhole) {
+TEST(Airlight, OfPiecesSumsToThatOfTheRay) {
   const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.8));
   const Lamp lamp = LampAt({30.0, 2.0, 1.0});
   LampSegment piece = Along({1.0, 0.0, 0.0}, 100.0);
@@ -160,7 +160,7 @@ TEST(Airlight, PiecesOfARaySumToTheWhole) {
   EXPECT_NEAR(sum / whole, 1.0, 1e-4);
 }
 
-TEST(Airlight, ARayThatMissesTheBeamSeesNothing) {
+TEST(Airlight, OutsideTheBeamIsZero) {
   const LampAir air = HomogeneousAir(0.02, 0.02, HenyeyGreenstein(0.6));
   Lamp lamp = LampAt({40.0, 5.0, 0.0});
   lamp.axis = {0.0, 1.0, 0.0};
@@ -172,7 +172,7 @@ TEST(Airlight, ARayThatMissesTheBeamSeesNothing) {
   ExpectNearTheReference(air, lamp, Along({1.0, 0.0, 0.0}, 100.0), 1e-3, "across the beam");
 }
 
-TEST(Airlight, AMeasuredTableShinesLikeTheConeThatItSamples) {
+TEST(Airlight, OfATableEqualsThatOfItsCone) {
   const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.6));
   Lamp cone = LampAt({40.0, 10.0, 0.0});
   cone.axis = glm::normalize(glm::dvec3(-0.6, -1.0, 0.2));
@@ -220,7 +220,7 @@ TEST(Airlight, EveryBandHasItsOwnExtinction) {
   }
 }
 
-TEST(Airlight, SurfacesCollectTheAirsLightFromTheirHemisphere) {
+TEST(Airlight, OnSurfacesIsTheIntegralOverTheirHemisphere) {
   for (const double g : {0.0, 0.85}) {
     const LampAir air = HomogeneousAir(0.01, 0.012, HenyeyGreenstein(g));
     for (const double cos_normal : {1.0, 0.5, 0.0, -0.5}) {
@@ -263,7 +263,7 @@ LampAir HeightFogUnderClearAir(const PhaseFunction& phase) {
 
 // Fixed on 2026-11-21: panels were made for the fog alone, and up to half of the light of rays that
 // leave it was missed, whatever the number of nodes.
-TEST(Airlight, OverFogTheLightThatClearAirScattersIsFound) {
+TEST(Airlight, OfClearAirAboveFogIsFound) {
   LampAir air = HeightFogUnderClearAir(HenyeyGreenstein(0.8));
   air.altitude_at_origin_m = 38.0;
   for (const double distance : {430.0, 1200.0, 2200.0}) {
@@ -278,7 +278,7 @@ TEST(Airlight, OverFogTheLightThatClearAirScattersIsFound) {
 
 // Fixed on 2026-11-21: where the light fell to nothing from one point of the ray to the next, its
 // scale was taken for 0 and the radiance was not a number.
-TEST(Airlight, LightThatEndsAtOnceIsANumber) {
+TEST(Airlight, IsFiniteWhereLightEndsAbruptly) {
   LampAir air = HomogeneousAir(4e-3, 4e-3, HenyeyGreenstein(0.8));
   air.layers[0].scale_height_m = 25.0;  // 2 per metre at the eye, 152 m down
   LampSegment ray;
@@ -295,7 +295,7 @@ TEST(Airlight, LightThatEndsAtOnceIsANumber) {
 
 // Fixed on 2026-11-21: where two points of the ray at which the light was looked at fell together,
 // the panel between them had no width, and the radiance was not a number.
-TEST(Airlight, IsANumberInEveryDirectionAroundAPointUnderALamp) {
+TEST(Airlight, IsFiniteInEveryDirectionUnderALamp) {
   const LampAir air = HeightFogUnderClearAir(DropletPhase(12.0));
   const GaussRule& rule = GaussLegendre(3);
   for (double below_m = 0.2; below_m < 2e4; below_m *= 1.6) {
@@ -316,7 +316,7 @@ TEST(Airlight, IsANumberInEveryDirectionAroundAPointUnderALamp) {
   }
 }
 
-TEST(Airlight, ItsEffortIsTheNodesAndWhatFindsThePanels) {
+TEST(Airlight, ReportsItsNumberOfEvaluations) {
   const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.8));
   for (const int nodes : {8, 16, 32}) {
     const AirlightEffort effort =
@@ -329,12 +329,12 @@ TEST(Airlight, ItsEffortIsTheNodesAndWhatFindsThePanels) {
 }
 
 // Hard case 28.
-TEST(Airlight, NothingInTheAirScattersNothing) {
+TEST(Airlight, WithoutScatteringIsZero) {
   const LampAir air = HomogeneousAir(0.0, 0.0, HenyeyGreenstein(0.0));
   EXPECT_EQ(Airlight(air, LampAt({30.0, 2.0, 0.0}), Along({1.0, 0.0, 0.0}, kInfinite))[0], 0.0);
 }
 
-TEST(Lamp, TransmittanceOfHeightFogIsTheIntegralOfItsDensity) {
+TEST(Lamp, TransmittanceOfFogIsTheIntegralOfItsDensity) {
   LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.0));
   air.layers[0].scale_height_m = 50.0;
   // Level, and rising by one scale height: (1 - 1/e) of the length.
@@ -350,7 +350,7 @@ TEST(Lamp, TransmittanceOfHeightFogIsTheIntegralOfItsDensity) {
   }
 }
 
-TEST(Lamp, AProfileThatIsNoneIsRefusedByName) {
+TEST(Lamp, InvalidProfilesAreRefusedByName) {
   LampProfile profile;
   profile.kind = LampProfile::Kind::kCone;
   profile.inner_rad = 0.5;
@@ -363,7 +363,7 @@ TEST(Lamp, AProfileThatIsNoneIsRefusedByName) {
   EXPECT_THROW(Validate(profile, "light"), InputError);
 }
 
-TEST(Lamp, AMeasuredTableGoesOnAroundItsAxis) {
+TEST(Lamp, MeasuredTablesWrapAroundTheirAxis) {
   LampProfile profile;
   profile.kind = LampProfile::Kind::kTable;
   profile.table = {{0.0, 0.5 * kPi}, {0.0, kPi}, {2.0, 1.0, 2.0, 3.0}};

@@ -8,7 +8,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-TEST(AngleBetween, KeepsItsDigitsAtTheEnds) {
+TEST(AngleBetween, IsAccurateForParallelAndOppositeVectors) {
   const glm::dvec3 ahead(0.0, 0.0, 2.0);
   for (const double angle : {0.0, 1e-9, 1e-4, 0.5, 2.0, kPi - 1e-9, kPi}) {
     const glm::dvec3 other(3.0 * std::sin(angle), 0.0, 3.0 * std::cos(angle));

@@ -14,7 +14,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-TEST(ErrorStatistics, OfFourErrorsAreTheFormulas) {
+TEST(ErrorStatistics, OfFourErrorsFollowTheFormulas) {
   const ErrorStatistics errors({0.03, 0.01, 0.01, 0.01});
   const double square = 0.0012 / 4.0, fourth = (0.81e-6 + 0.03e-6) / 4.0;
   const double standard_error = std::sqrt((fourth - square * square) / 4.0);
@@ -27,7 +27,7 @@ TEST(ErrorStatistics, OfFourErrorsAreTheFormulas) {
   EXPECT_EQ(errors.count(), 4U);
 }
 
-TEST(ErrorStatistics, ThatAreNotFiniteAreNoErrorsOfZero) {
+TEST(ErrorStatistics, NonFiniteErrorsAreRefused) {
   EXPECT_THROW(static_cast<void>(ErrorStatistics({0.01, std::nan("")})), InternalError);
 }
 
@@ -47,7 +47,7 @@ double ShareUnderTheLimit(Law law, double rms) {
 }
 
 // 4000 samples tell a share of 0.97 to 0.003.
-TEST(ErrorStatistics, RmsOfALawIsUnderItsLimitAsOftenAsStated) {
+TEST(ErrorStatistics, UpperLimitOfTheRmsHoldsAsOftenAsStated) {
   EXPECT_NEAR(ShareUnderTheLimit(std::normal_distribution<double>(), 1.0), 0.99, 0.006);
   EXPECT_NEAR(ShareUnderTheLimit(std::exponential_distribution<double>(), std::sqrt(2.0)), 0.972,
               0.009);
@@ -66,7 +66,7 @@ TEST(ErrorStatistics, QuantilesAreValuesOfTheSample) {
   EXPECT_EQ(ErrorStatistics({1.0, 2.0, 30.0}).Quantile(0.95), 30.0) << "the worst of few";
 }
 
-TEST(ErrorStatistics, OfNothingAreZero) {
+TEST(ErrorStatistics, OfAnEmptySampleAreZero) {
   const ErrorStatistics none(std::vector<double>{});
   EXPECT_EQ(none.count(), 0U);
   for (const double value : {none.mean(), none.Rms(), none.RmsAtMost(), none.Largest(),

@@ -21,7 +21,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-TEST(AerosolMixture, AtTheirOwnWavelengthTheyAreTheirTable) {
+TEST(AerosolMixture, EqualsItsTableAtTabulatedWavelengths) {
   const AerosolOptics desert = AerosolMixture("desert", {450.0, 550.0, 650.0});
   EXPECT_NEAR(desert.extinction_per_m[1], 1.4467e-4, 1e-12);
   EXPECT_NEAR(desert.scattering_per_m[1], 1.4467e-4 * 0.8879, 1e-12);
@@ -30,7 +30,7 @@ TEST(AerosolMixture, AtTheirOwnWavelengthTheyAreTheirTable) {
   EXPECT_NEAR(polluted.extinction_per_m[0], 1.7457e-4, 1e-12);
 }
 
-TEST(AerosolMixture, MeanCosinesAreThoseThatOpacGives) {
+TEST(AerosolMixture, MeanCosinesAreThoseOfOpac) {
   const std::map<std::string, double> published{{"continental_clean", 0.7086},
                                                 {"continental_average", 0.7034},
                                                 {"continental_polluted", 0.6977},
@@ -119,7 +119,7 @@ TEST(AerosolMixture, SpectraHaveThePublishedAngstromExponents) {
   }
 }
 
-TEST(AerosolMixture, BeyondTheTableSpectraGoOnAndStayPositive) {
+TEST(AerosolMixture, SpectraStayPositiveBeyondTheTable) {
   for (const std::string& name : AerosolMixtureNames()) {
     const AerosolOptics optics = AerosolMixture(name, {200.0, 350.0, 900.0, 4000.0});
     for (std::size_t i = 0; i < 4; ++i) {
@@ -130,12 +130,12 @@ TEST(AerosolMixture, BeyondTheTableSpectraGoOnAndStayPositive) {
   }
 }
 
-TEST(AerosolMixture, AnUnknownNameIsRefusedWithAllThatAreKnown) {
+TEST(AerosolMixture, AnUnknownNameIsRefusedWithAllKnownOnes) {
   EXPECT_THAT(tests::FaultOf([] { return AerosolMixture("sahara", {550.0}); }),
               testing::HasSubstr("continental_clean, continental_average"));
 }
 
-TEST(AerosolMixture, CornetteShanksOfAMeanCosineHasIt) {
+TEST(AerosolMixture, CornetteShanksHasTheRequestedMeanCosine) {
   for (const double mean : {0.0, 0.3, 0.7, 0.95}) {
     const PhaseFunction phase{.kind = PhaseKind::kCornetteShanks, .g = CornetteShanksG(mean)};
     EXPECT_NEAR(MeanCosine(phase), mean, 1e-9);
@@ -176,7 +176,7 @@ TEST(LorenzMie, EfficienciesAreThePublishedOnes) {
   }
 }
 
-TEST(LorenzMie, SmallSpheresScatterAsRayleighSaid) {
+TEST(LorenzMie, SmallSpheresScatterLikeRayleigh) {
   const double x = 0.01;
   const std::complex<double> m(1.33, 0.0);
   const SphereScattering mie = ScatterBySphere(m, x, {0.5, 2.0});
@@ -199,12 +199,12 @@ TEST(LorenzMie, PhaseFunctionHasTheIntegralAndMeanOfTheSeries) {
   }
 }
 
-TEST(LorenzMie, LargeSpheresTakeTwiceTheirShadow) {
+TEST(LorenzMie, LargeSpheresExtinguishTwiceTheirShadow) {
   const SphereScattering mie = ScatterBySphere({1.33, 0.01}, 3000.0, {});
   EXPECT_NEAR(mie.extinction_efficiency, 2.0, 0.02) << "2 + O(x^(-2/3))";
 }
 
-TEST(LorenzMie, SizesThatHardlyDifferScatterAsTheirMeanSphere) {
+TEST(LorenzMie, NarrowSizeDistributionsScatterAsTheirMeanSphere) {
   const SphereScattering many = ScatterBySpheres(
       {1.33, 0.0}, {.effective_radius_um = 1.0, .effective_variance = 2e-4}, 500.0, {});
   const SphereScattering one = ScatterBySphere({1.33, 0.0}, 4.0 * kPi, {});
@@ -213,7 +213,7 @@ TEST(LorenzMie, SizesThatHardlyDifferScatterAsTheirMeanSphere) {
   EXPECT_NEAR(many.mean_cosine, one.mean_cosine, 0.01);
 }
 
-TEST(LorenzMie, FogFitsItsDropletsAndOneLobeDoesNot) {
+TEST(LorenzMie, FogPhaseFunctionFitsDropletsBetterThanOneLobe) {
   // Half the integral of |fit - Mie| is the share of light that goes elsewhere. The narrowest peak,
   // of 20 um, is three degrees wide.
   const std::vector<double> angles = Angles(tests::ScaledDown(720, 360));
@@ -263,7 +263,7 @@ TEST(ScatteringMatrix, MoleculesScatterAllTheirLight) {
                 1e-16);
 }
 
-TEST(ScatteringMatrix, AirDepolarisesAsItsTableSays) {
+TEST(ScatteringMatrix, AirDepolarisesAsTabulated) {
   const auto columns = atmosphere::ReadColumns("atmosphere/data/rayleigh_10nm.csv", {0, 3});
   ASSERT_GT(columns[0].size(), 40U);
   for (std::size_t row = 0; row < columns[0].size(); ++row) {
@@ -272,7 +272,7 @@ TEST(ScatteringMatrix, AirDepolarisesAsItsTableSays) {
   }
 }
 
-TEST(ScatteringMatrix, SmallSpheresPolariseAsRoundMolecules) {
+TEST(ScatteringMatrix, SmallSpheresPolariseLikeIsotropicMolecules) {
   const SphereScattering small = ScatterBySphere({1.33, 0.0}, 0.01, Angles(180));
   for (const double cosine : {-0.95, -0.4, 0.1, 0.7}) {
     const ScatteringMatrix molecule = RayleighMatrix(0.0, cosine);
@@ -287,7 +287,7 @@ TEST(ScatteringMatrix, SmallSpheresPolariseAsRoundMolecules) {
 }
 
 // Light keeps one phase where a1^2 = a3^2 + b1^2 + b2^2.
-TEST(ScatteringMatrix, OneSphereKeepsLightPolarisedAndManyDoNot) {
+TEST(ScatteringMatrix, OneSphereKeepsLightPolarisedUnlikeMany) {
   const std::vector<double> angles{0.0, 0.5, 1.5, 2.5, kPi};
   const SizeDistribution sizes{.effective_radius_um = 0.5, .effective_variance = 0.1};
   const SphereRatios one = ScatterBySphere({1.5, 0.01}, 6.0, angles).polarised;

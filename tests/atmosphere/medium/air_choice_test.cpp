@@ -8,7 +8,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-TEST(AirChoice, AVisibilityThatIsAskedForIsThatOfTheAir) {
+TEST(AirChoice, AirHasTheRequestedVisibility) {
   const Medium earth = MediumPreset("earth");
   for (const double visibility_m : {2e3, 20e3, 100e3}) {
     AirChoice choice;
@@ -18,7 +18,7 @@ TEST(AirChoice, AVisibilityThatIsAskedForIsThatOfTheAir) {
   EXPECT_EQ(AerosolForVisibility(earth, 1e7), 0.0) << "molecules alone leave less";
 }
 
-TEST(AirChoice, VisibilityIsThatOfTheAirAndTheFogAtTheEye) {
+TEST(AirChoice, VisibilityIsThatOfAirAndFogAtTheEye) {
   const Medium earth = MediumPreset("earth");
   EXPECT_DOUBLE_EQ(VisibilityAt(earth, 0.0, 0.0), VisibilityOf(earth));
   EXPECT_GT(VisibilityAt(earth, 3000.0, 0.0), 1.5 * VisibilityOf(earth)) << "over the haze";
@@ -26,7 +26,7 @@ TEST(AirChoice, VisibilityIsThatOfTheAirAndTheFogAtTheEye) {
   EXPECT_EQ(VisibilityAt(earth, -100.0, 0.0), VisibilityOf(earth));
 }
 
-TEST(AirChoice, OzoneIsCountedInDobsonUnits) {
+TEST(AirChoice, OzoneIsMeasuredInDobsonUnits) {
   const Medium earth = MediumPreset("earth");
   EXPECT_NEAR(OzoneDobson(earth), 300.0, 60.0) << "the preset has the mean of the earth";
   AirChoice choice;
@@ -35,7 +35,7 @@ TEST(AirChoice, OzoneIsCountedInDobsonUnits) {
   EXPECT_EQ(OzoneDobson(MediumPreset("mars")), 0.0);
 }
 
-TEST(AirChoice, WhatIsOutOfRangeIsNamed) {
+TEST(AirChoice, ValuesOutOfRangeAreNamed) {
   AirChoice choice;
   choice.ground_albedo = 1.5;
   EXPECT_NE(

@@ -58,7 +58,7 @@ peak_m = 25000.0
 top_m = 40000.0
 )";
 
-TEST(AtmosphereFile, NothingGivenIsTheEarth) {
+TEST(AtmosphereFile, AnEmptyFileIsTheEarth) {
   EXPECT_EQ(Read(""), MediumPreset("earth"));
   EXPECT_EQ(Read("# only a comment\n[planet]\n"), MediumPreset("earth"));
   EXPECT_EQ(Read("\xef\xbb\xbfpreset = \"hazy\"\r\n"), MediumPreset("hazy"))
@@ -89,7 +89,7 @@ TEST(AtmosphereFile, DescendingListsAreReversed) {
       << "at 450 nm";
 }
 
-TEST(AtmosphereFile, WhatIsNotGivenIsThePresets) {
+TEST(AtmosphereFile, MissingKeysHaveTheValuesOfThePreset) {
   const Medium medium = Read("preset = \"hazy\"\n[mie]\nscale_height_m = 2000\n");
   Medium expected = MediumPreset("hazy");
   expected.mie_scale_height_m = 2000.0;
@@ -104,7 +104,7 @@ TEST(AtmosphereFile, BandsChooseTheWavelengths) {
   }
 }
 
-TEST(AtmosphereFile, PolarisationIsThatOfThePresetUnlessGiven) {
+TEST(AtmosphereFile, PolarisationIsThePresetsUnlessGiven) {
   EXPECT_TRUE(Read("").polarised);
   EXPECT_FALSE(Read("preset = \"bruneton2017\"\n").polarised) << "as others have it";
   EXPECT_EQ(Read("polarised = true\n"), MediumPreset("earth"));
@@ -125,7 +125,7 @@ TEST(AtmosphereFile, PolarisationIsThatOfThePresetUnlessGiven) {
   EXPECT_FALSE(reversed.polarised) << "a shape of scattering of its own";
 }
 
-TEST(AtmosphereFile, AScaleHeightAloneMakesMoleculesOneExponential) {
+TEST(AtmosphereFile, AScaleHeightGivesMoleculesOneExponential) {
   EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\n").rayleigh_deficit, MoleculeDeficit{});
   const Medium both =
       Read("[rayleigh]\nscale_height_m = 7000\ndeficit = 0.3\ndeficit_scale_height_m = 2500\n");
@@ -135,7 +135,7 @@ TEST(AtmosphereFile, AScaleHeightAloneMakesMoleculesOneExponential) {
               1e-15);
 }
 
-TEST(AtmosphereFile, RaysBendAsInAlmanacsUnlessTheFileGivesTheDensity) {
+TEST(AtmosphereFile, RefractionIsThatOfAlmanacsUnlessDensityIsGiven) {
   EXPECT_EQ(Read("[rayleigh]\nrefraction = \"molecules\"\n").refraction, RefractionBy::kMolecules);
   EXPECT_EQ(Read("[mie]\nscale_height_m = 1000\n").refraction, RefractionBy::kAlmanacs);
   EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\n").refraction, RefractionBy::kMolecules);
@@ -144,7 +144,7 @@ TEST(AtmosphereFile, RaysBendAsInAlmanacsUnlessTheFileGivesTheDensity) {
   EXPECT_EQ(Read("preset = \"mars\"\n").refraction, RefractionBy::kMolecules);
 }
 
-TEST(AtmosphereFile, VisibilityIsWhereContrastFallsToTwoPerCent) {
+TEST(AtmosphereFile, VisibilityIsTheDistanceOfTwoPercentContrast) {
   const Medium medium =
       Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nvisibility_m = 23000\n");
   const double extinction = medium.mie_extinction_per_m[0] + medium.rayleigh_scattering_per_m[0];
@@ -156,7 +156,7 @@ TEST(AtmosphereFile, VisibilityIsWhereContrastFallsToTwoPerCent) {
       << "molecules at 550 nm are interpolated between the bands";
 }
 
-TEST(AtmosphereFile, TurbidityIsTheOpticalDepthOverThatOfCleanAir) {
+TEST(AtmosphereFile, TurbidityIsOpticalDepthRelativeToCleanAir) {
   const Medium medium = Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nturbidity = 3\n");
   const double aerosol = medium.mie_extinction_per_m[0] * medium.mie_scale_height_m;
   const double molecules = medium.rayleigh_scattering_per_m[0] * MoleculeColumn_m(medium);
@@ -175,7 +175,7 @@ TEST(AtmosphereFile, OpticalDepthAndExponentKeepTheAlbedo) {
   EXPECT_EQ(grey.mie_scattering_per_m, grey.mie_extinction_per_m);
 }
 
-TEST(AtmosphereFile, DobsonIsTheColumnOfTheLayer) {
+TEST(AtmosphereFile, DobsonUnitsSetTheColumnOfTheLayer) {
   const Medium thin = Read("[ozone]\ndobson = 150\n");
   const Medium narrow = Read("[ozone]\ndobson = 300\nbottom_m = 20000\ntop_m = 35000\n");
   const Medium earth = MediumPreset("earth");
@@ -186,7 +186,7 @@ TEST(AtmosphereFile, DobsonIsTheColumnOfTheLayer) {
   }
 }
 
-TEST(AtmosphereFile, OzoneHasTwoProfilesOfWhichTheEdgesMakeATent) {
+TEST(AtmosphereFile, OzoneProfilesAreSmoothOrATent) {
   const Medium earth = MediumPreset("earth");
   EXPECT_EQ(Read("[ozone]\nprofile = \"tent\"\n").ozone, OzoneLayer{});
   EXPECT_EQ(Read("[ozone]\nbottom_m = 12000\n").ozone, (OzoneLayer{12e3, 25e3, 40e3}));
@@ -199,7 +199,7 @@ TEST(AtmosphereFile, OzoneHasTwoProfilesOfWhichTheEdgesMakeATent) {
       << "another profile keeps the column";
 }
 
-TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
+TEST(AtmosphereFile, PhaseParametersNeedTheirPhaseFunction) {
   const Medium medium = Read(
       "[mie]\nphase = \"double-henyey-greenstein\"\ng = 0.9\ng_back = -0.2\nback_weight = 0.1\n");
   EXPECT_EQ(medium.mie_phase.front().kind, PhaseKind::kDoubleHenyeyGreenstein);
@@ -209,7 +209,7 @@ TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
 }
 
 // Such files were written when the presets of the earth had one lobe.
-TEST(AtmosphereFile, ALobeMayStandForTheTableOfAPreset) {
+TEST(AtmosphereFile, ALobeMayReplaceTheTableOfAPreset) {
   const Medium lobe = Read("[mie]\ng = 0.76\n");
   EXPECT_EQ(lobe.mie_phase,
             (std::vector<PhaseFunction>{{.kind = PhaseKind::kCornetteShanks, .g = 0.76}}));
@@ -236,12 +236,12 @@ TEST(AtmosphereFile, PhaseParametersMayBeOnePerWavelength) {
       << "four times the same is one for all";
 }
 
-TEST(AtmosphereFile, FogIsKnownByItsDroplets) {
+TEST(AtmosphereFile, FogIsDefinedByItsDroplets) {
   const Medium medium = Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\n");
   EXPECT_EQ(medium.mie_phase.front(), DropletPhase(12.0));
 }
 
-TEST(AtmosphereFile, APhaseFunctionMayBeAFileBesideTheAtmosphere) {
+TEST(AtmosphereFile, APhaseFunctionMayBeAFileNextToTheAtmosphere) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / "alpenglow_phase_file";
   std::filesystem::create_directory(folder);
@@ -268,7 +268,7 @@ TEST(AtmosphereFile, APhaseFunctionMayBeAFileBesideTheAtmosphere) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(AtmosphereFile, AMixtureBringsSpectrumLayerAndPhaseFunction) {
+TEST(AtmosphereFile, AMixtureSetsSpectrumLayerAndPhaseFunction) {
   const Medium desert = Read("[aerosol]\nmixture = \"desert\"\n");
   const AerosolOptics optics = AerosolMixture("desert", desert.wavelengths_nm);
   EXPECT_EQ(desert.mie_extinction_per_m, optics.extinction_per_m);
@@ -277,7 +277,7 @@ TEST(AtmosphereFile, AMixtureBringsSpectrumLayerAndPhaseFunction) {
   EXPECT_EQ(desert.mie_phase, optics.phase);
 }
 
-TEST(AtmosphereFile, TheLoadOfAMixtureMayBeGivenInEveryWay) {
+TEST(AtmosphereFile, AmountOfAMixtureMayBeGivenByAnyKey) {
   const std::string mixture = "mixture = \"maritime_clean\"\n";
   const std::string green = "[spectrum]\nwavelengths_nm = [450, 550, 650]\n[aerosol]\n" + mixture;
   const Medium own = Read(green);
@@ -299,7 +299,7 @@ TEST(AtmosphereFile, TheLoadOfAMixtureMayBeGivenInEveryWay) {
   EXPECT_EQ(fog.mie_phase.front(), DropletPhase(10.0)) << "[mie] may say otherwise";
 }
 
-TEST(AtmosphereFile, WavelengthsBeyondTheDataOfThePresetNeedTheirLists) {
+TEST(AtmosphereFile, WavelengthsBeyondThePresetsDataNeedLists) {
   const Medium infrared = Read(
       "[spectrum]\nwavelengths_nm = [900]\nsolar_irradiance = [0.91]\n[planet]\nground_albedo = "
       "0.3\n"
@@ -315,7 +315,7 @@ struct BadInput {
   const char* message;
 };
 
-TEST(AtmosphereFile, LimitsThatLeaveNoValueNameBothCauses) {
+TEST(AtmosphereFile, ContradictingLimitsNameBothCauses) {
   const BadInput inputs[] = {
       {"# a thin atmosphere\npreset = \"earth\"\n[rayleigh]\nscale_height_m = 100\n",
        "a.toml:4: planet.atmosphere_top_m is 120000, but no value is possible: with ozone up to "
@@ -356,7 +356,7 @@ void ExpectRefusals(const TomlKey& key, const std::string& section, const std::s
             fmt::format("a.toml:{}: unknown key {}q; did you mean {}?", line, name, key.key));
 }
 
-TEST(AtmosphereFile, EveryKeyRefusesValuesThatItDoesNotAccept) {
+TEST(AtmosphereFile, EveryKeyRefusesInvalidValues) {
   for (const TomlKey& key : TopFieldsOfMedium().Keys()) ExpectRefusals(key, "", key.key);
   for (const TomlFields<Medium>& section : SectionsOfMedium()) {
     for (const TomlKey& key : section.Keys())
@@ -390,7 +390,7 @@ TEST(AtmosphereFile, TheManualHasTheParametersOfEveryPhaseFunction) {
   }
 }
 
-TEST(AtmosphereFile, EveryKeyButRefractionChangesTheHashOfAMedium) {
+TEST(AtmosphereFile, EveryKeyExceptRefractionChangesTheHash) {
   Medium earth = MediumPreset("earth");
   earth.rayleigh_deficit.share = 0.5;
   for (const TomlFields<Medium>& section : SectionsOfMedium()) {
@@ -510,7 +510,7 @@ TEST(AtmosphereFile, Utf16AndDeepNestingAreRefused) {
               StartsWith("a.toml:1: not valid TOML"));
 }
 
-TEST(AtmosphereFile, EveryTruncationOfAFileIsReadOrRefusedWithALine) {
+TEST(AtmosphereFile, EveryTruncationIsReadOrRefusedWithALine) {
   const std::string whole = kComplete;
   for (std::size_t length = 0; length < whole.size(); ++length) {
     const std::string fault = FileFaultOf(whole.substr(0, length));
@@ -518,7 +518,7 @@ TEST(AtmosphereFile, EveryTruncationOfAFileIsReadOrRefusedWithALine) {
   }
 }
 
-TEST(AtmosphereFile, FilesAreReadAndNamedInFaults) {
+TEST(AtmosphereFile, FilesAreReadAndNamedInMessages) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / "alpenglow_atmosphere_file_test.toml";
   std::ofstream(file) << kComplete;
@@ -530,7 +530,7 @@ TEST(AtmosphereFile, FilesAreReadAndNamedInFaults) {
   EXPECT_THROW((void)ReadMedium(file), InputError);
 }
 
-TEST(AtmosphereFile, WavelengthsThatAUseDoesNotTakeAreRefusedWithTheirLine) {
+TEST(AtmosphereFile, UnsupportedWavelengthsAreRefusedWithTheirLine) {
   std::string fine = "preset = \"earth\"\n[spectrum]\nwavelengths_nm = [380";
   for (int wavelength_nm = 390; wavelength_nm <= 800; wavelength_nm += 10)
     fine += fmt::format(", {}", wavelength_nm);

@@ -40,7 +40,7 @@ TEST(Medium, EveryPresetIsValidOnItsWavelengthsAndOnManyBands) {
   }
 }
 
-TEST(Medium, EarthHasFourBandsOverAnEllipsoid) {
+TEST(Medium, EarthHasFourBandsAndAnEllipsoid) {
   const Medium earth = MediumPreset("earth");
   EXPECT_EQ(earth.wavelengths_nm, WavelengthSet(4));
   EXPECT_TRUE(earth.follows_wgs84);
@@ -160,7 +160,7 @@ std::vector<Change> HashedChanges() {
   };
 }
 
-TEST(Medium, HashTellsApartEverythingThatChangesLight) {
+TEST(Medium, HashDependsOnEverythingThatChangesLight) {
   const std::uint64_t hash = MediumHash(MediumPreset("earth"));
   std::set<std::uint64_t> hashes{hash};
   for (const Change& change : HashedChanges()) {
@@ -174,7 +174,7 @@ TEST(Medium, HashTellsApartEverythingThatChangesLight) {
   EXPECT_EQ(MediumHash(same), hash);
 }
 
-TEST(Medium, OneValueForAllBandsIsTheSameAirAsItsCopies) {
+TEST(Medium, OneValueForAllBandsEqualsItsCopies) {
   Medium one = MediumPreset("earth");
   one.mie_phase = {PhaseFunction{}};
   one.rayleigh_depolarisation = {0.03};
@@ -189,7 +189,7 @@ TEST(Medium, OneValueForAllBandsIsTheSameAirAsItsCopies) {
   EXPECT_EQ(MiePhaseValues(copies, 0.3)[2], Phase(copies.mie_phase[2], 0.3));
 }
 
-TEST(Medium, MoleculesScatterAsHansenAndTravisSay) {
+TEST(Medium, MoleculesScatterAsInHansenAndTravis) {
   const Medium air = MediumPreset("earth");
   EXPECT_EQ(RayleighPhaseValues(InScalarLight(air), 0.3),
             std::vector<double>(4, Phase({.kind = PhaseKind::kRayleigh}, 0.3)));
@@ -201,7 +201,7 @@ TEST(Medium, MoleculesScatterAsHansenAndTravisSay) {
   }
 }
 
-TEST(Medium, GasOfEarthIsAirAndThatOfMarsCarbonDioxide) {
+TEST(Medium, GasOfEarthIsAirAndOfMarsCarbonDioxide) {
   EXPECT_EQ(GasDepolarisation("earth", {550.0})[0], AirDepolarisation(550.0));
   const double d = GasDepolarisation("mars", {550.0})[0];
   EXPECT_NEAR((6.0 + 3.0 * d) / (6.0 - 7.0 * d), 1.15, 1e-12)
@@ -286,7 +286,7 @@ TEST(Medium, EmptyAirIsValid) {
   EXPECT_EQ(FindFault(tests::WithoutAir(MediumPreset("earth"))), std::nullopt);
 }
 
-TEST(Medium, RadiusTopAndScaleHeightsKeepClosedFormsRight) {
+TEST(Medium, LimitsOfLengthsKeepClosedFormsAccurate) {
   // The changed medium is bruneton2017: a tent of ozone, one exponential of molecules.
   const Change changes[] = {
       // 25 scale heights of 8 km are the smallest radius.
@@ -346,7 +346,7 @@ TEST(Medium, RadiusTopAndScaleHeightsKeepClosedFormsRight) {
   }
 }
 
-TEST(MediumBands, OfAPresetAreThePresetThere) {
+TEST(MediumBands, OfAPresetEqualThePresetAtThoseWavelengths) {
   for (const char* name : {"earth", "hazy", "clear-mountain", "mars"}) {
     const auto four = OnBands(MediumPreset(name, WavelengthSet(16)), 4);
     ASSERT_TRUE(four.has_value()) << name;
@@ -354,7 +354,7 @@ TEST(MediumBands, OfAPresetAreThePresetThere) {
   }
 }
 
-TEST(MediumBands, FactorsOfAllWavelengthsAreKeptExactly) {
+TEST(MediumBands, KeepFactorsOfAllWavelengthsExactly) {
   const auto text = [](int bands) {
     return MediumFromToml("preset = \"earth\"\n[ozone]\ndobson = 450\n[spectrum]\nbands = " +
                               std::to_string(bands) + "\n",
@@ -369,7 +369,7 @@ TEST(MediumBands, FactorsOfAllWavelengthsAreKeptExactly) {
   }
 }
 
-TEST(MediumBands, DepolarisationIsThatOfTheGasOrLinearBetweenBands) {
+TEST(MediumBands, DepolarisationIsThatOfTheGasOrInterpolated) {
   const auto polarised = [](int bands) { return MediumPreset("earth", WavelengthSet(bands)); };
   const auto four = OnBands(polarised(16), 4);
   ASSERT_TRUE(four.has_value());
@@ -385,7 +385,7 @@ TEST(MediumBands, DepolarisationIsThatOfTheGasOrLinearBetweenBands) {
   EXPECT_EQ(OnBands(own, 8)->rayleigh_depolarisation, std::vector<double>{0.05});
 }
 
-TEST(MediumBands, ThereAreNoneWhereNothingSaysWhatTheyAre) {
+TEST(MediumBands, AreAbsentWithoutKnownSpectra) {
   EXPECT_FALSE(OnBands(MediumPreset("bruneton2017"), 8).has_value());
   Medium own = MediumPreset("earth");
   own.name = "my own";

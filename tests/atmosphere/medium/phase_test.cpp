@@ -112,7 +112,7 @@ TEST(Phase, IntegratesToOneAndHasTheMeanOfItsLobe) {
   }
 }
 
-TEST(Phase, PositiveGScattersForwardsAndNegativeGIsItsMirrorImage) {
+TEST(Phase, NegativeGIsTheMirrorImageOfPositiveG) {
   for (const PhaseKind kind : {PhaseKind::kHenyeyGreenstein, PhaseKind::kCornetteShanks,
                                PhaseKind::kSchlick, PhaseKind::kDraine}) {
     EXPECT_GT(Phase(Make(kind, 0.7), 1.0), 10.0 * Phase(Make(kind, 0.7), -1.0)) << NameOf(kind);
@@ -123,7 +123,7 @@ TEST(Phase, PositiveGScattersForwardsAndNegativeGIsItsMirrorImage) {
   }
 }
 
-TEST(Phase, DraineSpansHenyeyGreensteinCornetteShanksAndRayleigh) {
+TEST(Phase, DraineIncludesOtherPhaseFunctions) {
   for (const double c : {-1.0, -0.3, 0.2, 0.99, 1.0}) {
     EXPECT_NEAR(Phase(Make(PhaseKind::kDraine, 0.8, 0.0), c),
                 Phase(Make(PhaseKind::kHenyeyGreenstein, 0.8), c), 1e-13);
@@ -187,7 +187,7 @@ void ExpectHistogramOf(const PhaseFunction& phase) {
   }
 }
 
-TEST(Phase, SamplesOfTwoLobesFillHistogramBinsAsTheLobesDo) {
+TEST(Phase, SamplesOfTwoLobesHaveTheirDistribution) {
   ExpectHistogramOf(MakeDouble(0.8, -0.4, 0.3));
   ExpectHistogramOf(DropletPhase(12.0));
 }
@@ -202,7 +202,7 @@ TEST(Phase, SamplesStayInRangeAtTheEndsOfTheUnitInterval) {
   }
 }
 
-TEST(Phase, FogScattersForwardTheMoreTheLargerItsDroplets) {
+TEST(Phase, FogOfLargerDropletsScattersMoreForwards) {
   double before = 0.0;
   for (const double diameter_um : {5.0, 10.0, 20.0, 50.0}) {
     const PhaseFunction fog = DropletPhase(diameter_um);
@@ -225,7 +225,7 @@ TEST(Phase, FogScattersForwardTheMoreTheLargerItsDroplets) {
 }
 
 // Hard case 13.
-TEST(Phase, CosinesBeyondOneByRoundingAreClamped) {
+TEST(Phase, CosinesSlightlyBeyondOneAreClamped) {
   for (const PhaseFunction& phase : ManyPhases()) {
     EXPECT_EQ(Phase(phase, 1.0 + 1e-12), Phase(phase, 1.0)) << Describe(phase);
     EXPECT_EQ(Phase(phase, -1.0 - 1e-12), Phase(phase, -1.0)) << Describe(phase);
@@ -252,7 +252,7 @@ TEST(Phase, FloatAgreesWithDoubleEvenInTheSharpestLobe) {
   }
 }
 
-TEST(Phase, NamesGoThereAndBack) {
+TEST(Phase, NamesSurviveARoundTrip) {
   for (const PhaseFunction& phase : ManyPhases())
     EXPECT_EQ(PhaseKindFromName(NameOf(phase.kind)), phase.kind);
   EXPECT_THAT(tests::FaultOf([] { return PhaseKindFromName("mie"); }),
@@ -298,7 +298,7 @@ PhaseFunction Lobe(double g) { return {.kind = PhaseKind::kHenyeyGreenstein, .g 
 
 using tests::FaultOf;
 
-TEST(PhaseTable, FollowsALobeThroughTheAnglesOfOpac) {
+TEST(PhaseTable, FollowsALobeSampledAtTheAnglesOfOpac) {
   const struct { double g, bound; } lobes[] = {{0.7, 3e-4}, {0.9, 1e-3}, {0.97, 4e-3}};
   const std::vector<double> angles = OpacAngles();
   ASSERT_EQ(angles.size(), 112U);
@@ -314,7 +314,7 @@ TEST(PhaseTable, FollowsALobeThroughTheAnglesOfOpac) {
   }
 }
 
-TEST(PhaseTable, DenseSamplesAreKeptToOnePartInTwentyThousand) {
+TEST(PhaseTable, KeepsDenseSamplesToOnePartIn20000) {
   std::vector<double> angles;
   for (int i = 0; i <= 1800; ++i) angles.push_back(i * 0.1);
   const PhaseTable table(angles, ValuesAt(angles, Lobe(0.9)));
@@ -325,7 +325,7 @@ TEST(PhaseTable, DenseSamplesAreKeptToOnePartInTwentyThousand) {
   }
 }
 
-TEST(PhaseTable, IsPositiveHoweverRuggedTheSamples) {
+TEST(PhaseTable, IsPositiveForAnySamples) {
   std::vector<double> values{1.0, 1e-6, 50.0, 1e-8, 0.02, 1e-5, 0.3};
   const std::vector<double> angles{0.0, 1.0, 2.0, 40.0, 90.0, 170.0, 180.0};
   // Samples are scaled to an integral near 1 by trial: the integral of what is refused is in the
@@ -342,7 +342,7 @@ TEST(PhaseTable, IsPositiveHoweverRuggedTheSamples) {
   for (const double node : table.nodes()) EXPECT_GT(node, 0.0);
 }
 
-TEST(PhaseTable, ScalesSamplesAndSaysHowFarTheyWereOff) {
+TEST(PhaseTable, NormalisesSamplesAndReportsTheFactor) {
   const std::vector<double> angles = OpacAngles();
   std::vector<double> values = ValuesAt(angles, Lobe(0.7));
   for (double& value : values) value *= 1.015;
@@ -354,7 +354,7 @@ TEST(PhaseTable, ScalesSamplesAndSaysHowFarTheyWereOff) {
               HasSubstr("phase: the integral over the sphere is 1.025"));
 }
 
-TEST(PhaseTable, RefusesWhatIsNoPhaseFunction) {
+TEST(PhaseTable, RefusesInvalidPhaseFunctions) {
   const std::vector<double> angles = OpacAngles();
   const std::vector<double> values = ValuesAt(angles, Lobe(0.5));
   const auto with = [&](std::size_t index, double angle, double value) {
@@ -384,7 +384,7 @@ TEST(PhaseTable, BetweenWavelengthsIsTheMeanOfBoth) {
       << "mixing is linear but for the cubics in the logarithm";
 }
 
-TEST(PhaseTable, EqualSamplesAreEqualWhereverTheyAre) {
+TEST(PhaseTable, ComparesSamplesByValue) {
   const std::vector<double> angles = OpacAngles();
   const auto make = [&](double g) {
     return PhaseFunction{

@@ -9,7 +9,7 @@ namespace alpenglow::atmosphere {
 namespace {
 
 // U.S. Standard Atmosphere 1976, table I: geometric height [m], density [kg/m3].
-TEST(StandardAir, DensityIsThatOfThePublishedTable) {
+TEST(StandardAir, DensityAgreesWithThePublishedTable) {
   const double published[][2] = {{0.0, 1.2250},       {1000.0, 1.1117},     {5000.0, 0.73643},
                                  {10000.0, 0.41351},  {15000.0, 0.19476},   {20000.0, 0.088910},
                                  {30000.0, 0.018410}, {50000.0, 1.0269e-3}, {70000.0, 8.2829e-5},
@@ -20,12 +20,12 @@ TEST(StandardAir, DensityIsThatOfThePublishedTable) {
   }
 }
 
-TEST(StandardAir, SoundTravels340MetresASecondAtTheSeaAnd295InTheStratosphere) {
+TEST(StandardAir, SpeedOfSoundAgreesWithPublishedValues) {
   EXPECT_NEAR(StandardAirAt(0.0).sound_m_per_s, 340.294, 0.01) << "as the standard prints it";
   EXPECT_NEAR(StandardAirAt(15000.0).sound_m_per_s, 295.07, 0.01);
 }
 
-TEST(StandardAir, ThinsOutWithoutAJumpFromBelowTheSeaToOrbit) {
+TEST(StandardAir, DensityFallsContinuouslyUpToOrbit) {
   double below = StandardAirAt(-500.0).density_kg_per_m3;
   for (double h = -400.0; h < 400e3; h += 100.0) {
     const double here = StandardAirAt(h).density_kg_per_m3;

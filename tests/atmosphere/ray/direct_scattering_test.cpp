@@ -32,7 +32,7 @@ using tests::ReferenceRaysOf;
 constexpr int kFirst = 20001, kRays = 150;
 constexpr std::array kModes{DirectMode::kFast, DirectMode::kNormal};
 
-TEST(DirectScattering, KeepsItsErrorsInEveryRegimeAndPreset) {
+TEST(DirectScattering, KeepsItsErrorBoundsInEveryRegimeAndPreset) {
   for (const std::string& preset : MediumPresetNames()) {
     const DirectScattering direct(MediumPreset(preset));
     for (const DirectRegime& regime : DirectRegimes()) {
@@ -167,7 +167,7 @@ Medium OnPlanetOf(Medium medium, double radius_m) {
 }
 
 // These are the smallest planets that a medium may have, and one larger than Jupiter.
-TEST(DirectScattering, KeepsItsErrorsOnPlanetsOfAnySize) {
+TEST(DirectScattering, KeepsItsErrorBoundsOnPlanetsOfAnySize) {
   for (const Medium& medium :
        {OnPlanetOf(MediumPreset("bruneton2017"), 200e3), OnPlanetOf(MediumPreset("earth"), 223e3),
         OnPlanetOf(MediumPreset("mars"), 280e3), OnPlanetOf(MediumPreset("earth"), 8e7)}) {
@@ -188,7 +188,7 @@ TEST(DirectScattering, KeepsItsErrorsOnPlanetsOfAnySize) {
   }
 }
 
-TEST(DirectScattering, SegmentOfLengthZeroIsExactlyNothing) {
+TEST(DirectScattering, SegmentsOfLengthZeroAreExactlyZero) {
   const DirectScattering direct(MediumPreset("earth"));
   const ViewRay ray{100.0, 0.1, 0.5, 0.3, 0.0};
   const ScatteredOnce<float> light = direct.Scatter(ray, DirectMode::kNormal);
@@ -197,7 +197,7 @@ TEST(DirectScattering, SegmentOfLengthZeroIsExactlyNothing) {
   EXPECT_EQ(direct.Sample(ray, {}).count, 0U);
 }
 
-TEST(DirectScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
+TEST(DirectScattering, LightOfOneMillimetreOfAirIsAccurate) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);
   const SingleScattering<double> fine(medium);
@@ -259,7 +259,7 @@ void ExpectSamplesOf(const SingleScattering<double>& fine, const ViewRay& ray,
   }
 }
 
-TEST(DirectScattering, SamplesStandWhereTheySayAndCoverTheRay) {
+TEST(DirectScattering, SamplesCoverTheRayAtTheirDistances) {
   for (const char* preset : {"earth", "bruneton2017"}) {
     const Medium medium = MediumPreset(preset);
     const DirectScattering direct(medium);
@@ -276,7 +276,7 @@ TEST(DirectScattering, SamplesStandWhereTheySayAndCoverTheRay) {
   }
 }
 
-TEST(DirectScattering, EndsOfRaysAreThoseOfExtentOf) {
+TEST(DirectScattering, EndsOfRaysEqualThoseOfExtentOf) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);
   for (int i = 1; i <= 2000; ++i) {
@@ -289,7 +289,7 @@ TEST(DirectScattering, EndsOfRaysAreThoseOfExtentOf) {
   }
 }
 
-TEST(DirectScattering, ColumnsOfShortWaysKeepTheirDigits) {
+TEST(DirectScattering, ColumnsOfShortSegmentsAreAccurate) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);
   const SingleScattering<double> fine(medium);
@@ -319,7 +319,7 @@ LaneLight ShareOfLight(const DirectRay& placed, float share) {
   return light;
 }
 
-TEST(DirectScattering, SunlightAtLanesWeighsEveryNode) {
+TEST(DirectScattering, AFractionOfSunlightScalesEveryNode) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);
   for (const DirectRegime& regime : DirectRegimes()) {
@@ -340,7 +340,7 @@ TEST(DirectScattering, SunlightAtLanesWeighsEveryNode) {
   }
 }
 
-TEST(DirectScattering, EveryBandIsThatOfAMediumOfThatBandAlone) {
+TEST(DirectScattering, BandsDoNotDependOnOtherBands) {
   std::vector<double> wavelengths_nm;
   for (int i = 0; i < 40; ++i) wavelengths_nm.push_back(380.0 + 10.0 * i);
   const DirectScattering all(MediumPreset("earth", wavelengths_nm));
@@ -371,7 +371,7 @@ TEST(DirectScattering, InstructionSetsAgree) {
   }
 }
 
-TEST(DirectScattering, RaysThatAreNoRaysAreRefused) {
+TEST(DirectScattering, InvalidRaysAreRefused) {
   const DirectScattering direct(MediumPreset("earth"));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const ViewRay& ray :
@@ -413,7 +413,7 @@ double FittedOzone(const DirectAir& air, double altitude, double mu) {
   return sum / (mu + k);
 }
 
-TEST(DirectAir, PolynomialsOfOzoneKeepTheOpticalDepth) {
+TEST(DirectAir, PolynomialsOfOzoneKeepItsOpticalDepth) {
   const Medium medium = MediumPreset("earth");
   const DirectAir air = DirectAirOf(medium);
   double largest_per_km = 0.0;

@@ -86,7 +86,7 @@ std::vector<std::array<double, 2>> RaysToSpace(double radius_m) {
   return rays;
 }
 
-TEST(OpticalDepth, ClosedFormColumnsAreThoseOfQuadrature) {
+TEST(OpticalDepth, ClosedFormColumnsEqualQuadrature) {
   const Medium medium = Earth();
   const SingleScattering<double> in_double(medium);
   const SingleScattering<float> in_float(medium);
@@ -154,7 +154,7 @@ double Radiance(const SingleScattering<double>& air, const ViewRay& ray) {
 }
 
 // Hard case 14.
-TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
+TEST(OpticalDepth, OneMillimetreHasAccurateDepthAndLight) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   const SingleScattering<float> in_float(medium);
@@ -178,7 +178,7 @@ TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
 }
 
 // Hard case 5.
-TEST(OpticalDepth, OffTheLimbAirIsExactlyClearAndSpaceIsBlack) {
+TEST(OpticalDepth, RaysOutsideTheAirAreExactlyClearAndBlack) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
@@ -194,7 +194,7 @@ TEST(OpticalDepth, OffTheLimbAirIsExactlyClearAndSpaceIsBlack) {
 }
 
 // Hard case 5.
-TEST(OpticalDepth, FromSpaceTheLimbShines) {
+TEST(OpticalDepth, LimbShinesFromSpace) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
@@ -208,7 +208,7 @@ TEST(OpticalDepth, FromSpaceTheLimbShines) {
 }
 
 // Hard case 8.
-TEST(OpticalDepth, ARayThatGrazesTheTopFromOutsideIsClearAndDark) {
+TEST(OpticalDepth, ARayGrazingTheTopFromOutsideIsClearAndDark) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   const double r = medium.planet_radius_m + 400e3;
@@ -240,7 +240,7 @@ TEST(OpticalDepth, IsContinuousThroughTheTop) {
 }
 
 // Hard case 7.
-TEST(OpticalDepth, OneUlpAcrossTheHorizonLightDoesNotJump) {
+TEST(OpticalDepth, LightIsContinuousAcrossTheHorizon) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   for (const double altitude_m : {0.01, 1.7, 1000.0, 11000.0, 60000.0, 400e3}) {
@@ -259,7 +259,7 @@ TEST(OpticalDepth, OneUlpAcrossTheHorizonLightDoesNotJump) {
 }
 
 // Hard case 6.
-TEST(OpticalDepth, AClimbIntoSpaceIsContinuous) {
+TEST(OpticalDepth, IsContinuousDuringAClimbIntoSpace) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   for (const double mu : {1.0, 0.2, 0.0, -0.02, -0.3, -1.0}) {
@@ -276,7 +276,7 @@ TEST(OpticalDepth, AClimbIntoSpaceIsContinuous) {
 }
 
 // Hard case 11.
-TEST(OpticalDepth, ASunAtTheZenithLightsAllAzimuthsAlike) {
+TEST(OpticalDepth, ASunAtTheZenithLightsAllAzimuthsEqually) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   for (const double view_zenith : {0.0, 30.0, 60.0, 89.0}) {
@@ -289,7 +289,7 @@ TEST(OpticalDepth, ASunAtTheZenithLightsAllAzimuthsAlike) {
 }
 
 // Hard case 2.
-TEST(OpticalDepth, AnObserverBelowTheSphereSeesTheSkyOfTheGround) {
+TEST(OpticalDepth, ObserversBelowTheSphereSeeTheSkyOfTheGround) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   for (const double altitude_m : {-430.0, -11000.0}) {

@@ -31,7 +31,7 @@ TEST(Ray, HorizonSeparatesGroundFromSkyWithinOneUlp) {
   }
 }
 
-TEST(Ray, GivenLengthEndsItUnlessTheGroundIsNearer) {
+TEST(Ray, EndsAtItsLengthUnlessTheGroundIsNearer) {
   EXPECT_EQ(ExtentOf({100.0, 0.2, 1.0, 0.2, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kLength);
   EXPECT_EQ(ExtentOf({100.0, -1.0, 1.0, -1.0, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kGround);
   const auto passing = [](double length_m) {
@@ -43,7 +43,7 @@ TEST(Ray, GivenLengthEndsItUnlessTheGroundIsNearer) {
 }
 
 // Hard case 2.
-TEST(Ray, ASegmentBelowAltitudeZeroIsKnownFromBothEnds) {
+TEST(Ray, ASegmentBelowAltitudeZeroIsTheSameFromBothEnds) {
   // A chord from 50 m above to 400 m below altitude 0, and back.
   constexpr double kLength_m = 9000.0, kFrom_m = 50.0, kTo_m = -400.0;
   const double from = kRadius_m + kFrom_m, to = kRadius_m + kTo_m;
@@ -65,7 +65,7 @@ TEST(Ray, ASegmentBelowAltitudeZeroIsKnownFromBothEnds) {
 }
 
 // Hard case 39.
-TEST(Ray, AShortRayEndsAtGroundOrTopOnlyIfItReachesThem) {
+TEST(Ray, ShortRaysEndAtGroundOrTopOnlyIfTheyReachThem) {
   constexpr double kFrom_m = 200.0;
   for (const double perigee_m : {-2.0, -0.5, 0.5, 2.0, 50.0}) {
     // The ray goes down to the perigee and up again.
@@ -87,13 +87,13 @@ TEST(Ray, AShortRayEndsAtGroundOrTopOnlyIfItReachesThem) {
   }
 }
 
-TEST(Bands, MoreThanThereIsRoomForAreRefused) {
+TEST(Bands, TooManyAreRefused) {
   EXPECT_EQ(Bands<float>(kMaxBands).count, kMaxBands);
   EXPECT_THROW(Bands<float>(kMaxBands + 1), InputError);
   EXPECT_THROW(Bands<double>(512), InputError);
 }
 
-TEST(PlanetShadow, ZenithViewEntersLightWhereTheShadowEnds) {
+TEST(PlanetShadow, EndsOnAZenithViewWhereTheSunRises) {
   // With the sun e below the horizon, the shadow reaches R (1 / cos e - 1) over the observer.
   for (const double e : {0.02, 0.07, 0.1, 0.14}) {
     const ViewRay ray{0.0, 1.0, -std::sin(e), -std::sin(e)};
@@ -103,7 +103,7 @@ TEST(PlanetShadow, ZenithViewEntersLightWhereTheShadowEnds) {
   }
 }
 
-TEST(PlanetShadow, LookingAlongTheShadowAxisIsDarkToTheEnd) {
+TEST(PlanetShadow, CoversAWholeRayAlongItsAxis) {
   const ViewRay ray{4e5, 1.0, -1.0, -1.0};
   const RayExtent extent{0.0, 1e6, RayEnd::kLength};
   const ShadowSpan shadow = PlanetShadow(ray, extent, kRadius_m);
@@ -123,7 +123,7 @@ bool IsDark(const ViewRay& ray, double distance_m) {
 }
 
 // Hard case 15.
-TEST(PlanetShadow, OfALongSegmentIsTheOneStretchThatAScanFinds) {
+TEST(PlanetShadow, OfALongSegmentAgreesWithAScan) {
   // The shadow is convex: a ray that has left it stays in the light, whatever its direction.
   std::mt19937 random(15);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -172,7 +172,7 @@ TEST(Shell, TheHorizonFromTheGroundIsHorizontal) {
 }
 
 // Hard case 9.
-TEST(Shell, AltitudeAlongARayIsThatOfThePlainFormula) {
+TEST(Shell, AltitudeAlongARayEqualsThePlainFormula) {
   for (const double h : {0.0, 1e-5, 0.002, 1.0, 10.0, 120.0, 400.0}) {
     for (const double mu : {-1.0, -0.3, -0.01, 0.0, 0.01, 0.5, 1.0}) {
       for (const double d : {1e-6, 0.1, 10.0, 500.0}) {
@@ -183,7 +183,7 @@ TEST(Shell, AltitudeAlongARayIsThatOfThePlainFormula) {
   }
 }
 
-TEST(Shell, DistancesLeadToTheAltitudeTheyWereAskedFor) {
+TEST(Shell, DistancesReachTheRequestedAltitude) {
   for (const double h : {0.0, 0.002, 1.0, 60.0, 120.0, 400.0}) {
     for (const double mu : {-1.0, -0.5, -0.05, -1e-4, 0.0, 1e-4, 0.3, 1.0}) {
       for (const double z : {0.0, 0.01, 10.0, 60.0, 120.0, 400.0}) {
@@ -201,7 +201,7 @@ TEST(Shell, DistancesLeadToTheAltitudeTheyWereAskedFor) {
   }
 }
 
-TEST(Shell, TheLowestPointOfTheLineIsAtThePerigee) {
+TEST(Shell, LowestPointOfALineIsItsPerigee) {
   for (const double h : {0.002, 1.0, 60.0, 400.0}) {
     for (const double mu : {-0.3, -0.05, -1e-4, 0.0}) {
       const double perigee = shared::PerigeeAltitude(h, mu, kRadius_km);
@@ -214,7 +214,7 @@ TEST(Shell, TheLowestPointOfTheLineIsAtThePerigee) {
 }
 
 // Hard case 7.
-TEST(Shell, TheHorizonIsTheRayThatGrazesTheGround) {
+TEST(Shell, HorizonIsTheRayThatGrazesTheGround) {
   for (const double h : {1e-5, 0.002, 1.0, 11.0, 60.0, 400.0, 35786.0}) {
     const double mu = shared::HorizonCosine(h, kRadius_km);
     EXPECT_NEAR(shared::PerigeeAltitude(h, mu, kRadius_km), 0.0, 1e-11 * (kRadius_km + h))
@@ -225,7 +225,7 @@ TEST(Shell, TheHorizonIsTheRayThatGrazesTheGround) {
 }
 
 // Hard case 7.
-TEST(Shell, FloatTellsGroundFromSkyToAMillimetreOfThePerigee) {
+TEST(Shell, FloatSeparatesGroundFromSkyToAMillimetre) {
   for (const float h : {1e-5F, 0.002F, 0.1F, 1.0F, 11.0F}) {
     const float horizon = shared::HorizonCosine(h, 6371.0F);
     for (int step = -40; step <= 40; ++step) {
@@ -241,7 +241,7 @@ TEST(Shell, FloatTellsGroundFromSkyToAMillimetreOfThePerigee) {
 }
 
 // Hard case 1.
-TEST(Extent, AHorizontalRayAtAltitudeZeroLeavesTheAir) {
+TEST(Extent, HorizontalRaysAtAltitudeZeroLeaveTheAir) {
   const RayExtent extent = ExtentOf({0.0, 0.0}, kRadius_m, kTop_m);
   EXPECT_EQ(extent.end, RayEnd::kSpace);
   EXPECT_EQ(extent.begin_m, 0.0);
@@ -249,7 +249,7 @@ TEST(Extent, AHorizontalRayAtAltitudeZeroLeavesTheAir) {
 }
 
 // Hard case 1.
-TEST(Extent, ARayBelowTheHorizontalOnTheGroundHitsItAtOnce) {
+TEST(Extent, DownwardRaysOnTheGroundHitItAtOnce) {
   const double barely_down = std::nextafter(0.0, -1.0);
   for (const double mu : {barely_down, -1e-12, -0.5, -1.0}) {
     const RayExtent extent = ExtentOf({0.0, mu}, kRadius_m, kTop_m);
@@ -259,7 +259,7 @@ TEST(Extent, ARayBelowTheHorizontalOnTheGroundHitsItAtOnce) {
 }
 
 // Hard case 2.
-TEST(Extent, AnObserverBelowTheSphereSeesTheSkyAsFromTheGround) {
+TEST(Extent, ObserversBelowTheSphereSeeTheSkyOfTheGround) {
   for (const double altitude_m : {-430.0, -11000.0}) {
     for (const double mu : {0.0, 0.1, 1.0}) {
       const RayExtent below = ExtentOf({altitude_m, mu}, kRadius_m, kTop_m);
@@ -271,7 +271,7 @@ TEST(Extent, AnObserverBelowTheSphereSeesTheSkyAsFromTheGround) {
 }
 
 // Hard case 3.
-TEST(Extent, RefusesARayThatIsNotFiniteAndNamesTheField) {
+TEST(Extent, RefusesNonFiniteRaysAndNamesTheField) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::pair<ViewRay, const char*> rays[] = {
@@ -305,7 +305,7 @@ TEST(Extent, IsContinuousThroughTheTop) {
 }
 
 // Hard case 8.
-TEST(Extent, ARayThatGrazesTheTopFromOutsideHasNoLengthAndIsFinite) {
+TEST(Extent, RaysGrazingTheTopFromOutsideHaveZeroLength) {
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
     const double r = kRadius_m + altitude_m;
     const double r_top = kRadius_m + kTop_m;
@@ -326,7 +326,7 @@ TEST(Extent, ARayThatGrazesTheTopFromOutsideHasNoLengthAndIsFinite) {
 }
 
 // Hard case 5.
-TEST(Extent, FromSpaceARayAtTheLimbEntersAndLeavesSymmetrically) {
+TEST(Extent, RaysAtTheLimbEnterAndLeaveSymmetrically) {
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
     const double r = kRadius_m + altitude_m;
     const double tangent = kRadius_m + 30e3;
@@ -347,7 +347,7 @@ TEST(Extent, FromSpaceARayAtTheLimbEntersAndLeavesSymmetrically) {
 }
 
 // Hard case 7.
-TEST(Extent, AcrossTheHorizonRaysEndAtTheGroundOrInSpace) {
+TEST(Extent, RaysEndAtTheGroundBelowTheHorizonElseInSpace) {
   for (const double altitude_m : {0.01, 1.7, 1000.0, 11000.0, 400e3}) {
     const double horizon = shared::HorizonCosine(altitude_m * 1e-3, kRadius_km);
     const RayExtent over = ExtentOf({altitude_m, horizon + 1e-14}, kRadius_m, kTop_m);
@@ -361,7 +361,7 @@ TEST(Extent, AcrossTheHorizonRaysEndAtTheGroundOrInSpace) {
 }
 
 // Hard case 10.
-TEST(Extent, TheAzimuthOfAVerticalViewDoesNotMatter) {
+TEST(Extent, VerticalViewsDoNotDependOnAzimuth) {
   for (const double zenith : {0.0, 180.0}) {
     const ViewRay north = RayFromAngles(2.0, zenith, 0.0, 40.0);
     for (const double azimuth : {90.0, 180.0, 271.0}) {
@@ -370,7 +370,7 @@ TEST(Extent, TheAzimuthOfAVerticalViewDoesNotMatter) {
   }
 }
 
-TEST(PlanetShadow, LiesBehindThePlanetAndNowhereElse) {
+TEST(PlanetShadow, LiesOnlyBehindThePlanet) {
   const ViewRay noon = RayFromAngles(2.0, 45.0, 0.0, 30.0);
   const ShadowSpan none = PlanetShadow(noon, ExtentOf(noon, kRadius_m, kTop_m), kRadius_m);
   EXPECT_EQ(none.dark_begin_m, none.dark_end_m);

@@ -70,7 +70,7 @@ TEST(SingleScattering, DaySunsetAndTwilightAgreeWithTheReference) {
   }
 }
 
-TEST(SingleScattering, StoredCasesAgreeToOnePartInTenThousand) {
+TEST(SingleScattering, AgreesWithStoredCasesToOnePartInTenThousand) {
   const auto media = stored::Media();
   const auto is_no_limb_ray = [&](const stored::Row& row) {
     const ViewRay ray = stored::RayOf(row);
@@ -177,7 +177,7 @@ double ErrorOf(const Medium& medium, const tests::SunHeights& sun, tests::RayVie
   return tests::ErrorOfRegime(medium, sun, view, sampling, 200).rms;
 }
 
-TEST(SingleScattering, EightSamplesKeepAThousandthAndTwelveATenthOfIt) {
+TEST(SingleScattering, EightSamplesKeepAThousandthAndTwelveATenThousandth) {
   const Medium medium = MediumPreset("earth");
   for (const auto& sun : tests::kSunHeights) {
     for (const auto& view : tests::kRayViews) {
@@ -188,7 +188,7 @@ TEST(SingleScattering, EightSamplesKeepAThousandthAndTwelveATenthOfIt) {
   }
 }
 
-TEST(SingleScattering, SamplingOfHazeReachesAnErrorWithTheNodesOfTheEarthsAir) {
+TEST(SingleScattering, HazeNeedsNoMoreNodesThanTheEarthsAir) {
   const Medium medium = MediumPreset("hazy");
   for (const auto& [error, nodes] :
        {std::pair{1e-2, 6}, std::pair{1e-3, 8}, std::pair{1e-4, 12}, std::pair{1e-5, 16}}) {
@@ -201,7 +201,7 @@ TEST(SingleScattering, SamplingOfHazeReachesAnErrorWithTheNodesOfTheEarthsAir) {
   }
 }
 
-TEST(SingleScattering, ALayerOfAHundredMetresIsSampledAsTheEarthsAir) {
+TEST(SingleScattering, A100MetreLayerIsSampledAsWellAsTheEarthsAir) {
   Medium medium = tests::MoleculesOf(MediumPreset("bruneton2017"));
   medium.atmosphere_height_m = 2500.0;
   medium.rayleigh_scale_height_m = 100.0;
@@ -220,7 +220,7 @@ TEST(SingleScattering, ALayerOfAHundredMetresIsSampledAsTheEarthsAir) {
 }
 
 // Rays through twilight have up to 912 samples where ozone is a tent and samples in shadow count.
-TEST(SingleScattering, RaysOfAnyKindHaveRoomForTheFinestSampling) {
+TEST(SingleScattering, FinestSamplingFitsForEveryKindOfRay) {
   const Medium medium = MediumPreset("bruneton2017");
   const SingleScattering<double> air(medium);
   const Sampling finest{.nodes = 32, .split_ozone = true, .dark_samples = true};
@@ -244,7 +244,7 @@ TEST(SingleScattering, RaysOfAnyKindHaveRoomForTheFinestSampling) {
 }
 
 // This shows that the truth of ErrorOfRegime is right.
-TEST(SingleScattering, SixtyFourSamplesAreTheReferenceInEveryRegime) {
+TEST(SingleScattering, SixtyFourSamplesEqualTheReferenceInEveryRegime) {
   const Medium medium = MediumPreset("hazy");
   const SingleScattering<double> air(medium);
   for (const auto& sun : tests::kSunHeights) {
@@ -275,7 +275,7 @@ TEST(SingleScattering, FloatAgreesWithDouble) {
 }
 
 // Hard case 14.
-TEST(SingleScattering, SegmentOfLengthZeroIsExactlyNothing) {
+TEST(SingleScattering, SegmentsOfLengthZeroAreExactlyZero) {
   const SingleScattering<float> air(MediumPreset("earth"));
   const std::vector<float> nothing(air.bands(), 0.0F), all(air.bands(), 1.0F);
   for (const double mu : {1.0, 0.1, 0.0, -0.01, -1.0}) {
@@ -301,7 +301,7 @@ TEST(SingleScattering, ShortSegmentsKeepTheirOpticalDepth) {
   }
 }
 
-TEST(SingleScattering, ColumnsBetweenSamplesSumToThoseOfTheWholeWay) {
+TEST(SingleScattering, ColumnsBetweenSamplesSumToThatOfTheRay) {
   const Medium medium = MediumPreset("earth");
   const SingleScattering<double> air(medium);
   const auto columns_between = [&](const ViewRay& ray, std::size_t steps) {
@@ -369,7 +369,7 @@ TEST(SingleScattering, ZenithAndNadirViewsDoNotDependOnAzimuth) {
 }
 
 // Hard case 4.
-TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
+TEST(SingleScattering, LightIsContinuousAtTheTopOfTheAtmosphere) {
   const Medium medium = MediumPreset("earth");
   const SingleScattering<float> air(medium);
   const double top = medium.atmosphere_height_m;
@@ -380,7 +380,7 @@ TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
   }
 }
 
-TEST(SingleScattering, MarchOfManyStepsComesToTheSameLight) {
+TEST(SingleScattering, AMarchOfManyStepsGivesTheSameLight) {
   const SingleScattering<float> air(MediumPreset("bruneton2017"));
   for (const double sun_elevation_deg : {30.0, -3.0}) {
     const ViewRay ray = RayFromAngles(1500.0, 80.0, 20.0, 90.0 - sun_elevation_deg);
@@ -397,7 +397,7 @@ TEST(SingleScattering, MarchOfManyStepsComesToTheSameLight) {
   }
 }
 
-TEST(SingleScattering, MoreWavelengthsThanItHoldsAreRefused) {
+TEST(SingleScattering, TooManyWavelengthsAreRefused) {
   std::vector<double> wavelengths_nm;
   for (std::size_t i = 0; i <= kMaxBands; ++i)
     wavelengths_nm.push_back(400.0 + static_cast<double>(i));
@@ -407,7 +407,7 @@ TEST(SingleScattering, MoreWavelengthsThanItHoldsAreRefused) {
 // Dust of the desert has a table at every wavelength.
 Medium Dusty() { return MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"); }
 
-TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
+TEST(SingleScattering, EveryBandHasItsOwnPhaseFunction) {
   const Medium medium = Dusty();
   const SingleScattering<float> air(medium);
   for (const ViewRay& ray : RaysUnderSun(20.0)) {
@@ -424,7 +424,7 @@ TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
 }
 
 // Dust has a peak a degree wide, continental air a wider one.
-TEST(SingleScattering, PhaseFunctionsReadInFloatAreThoseOfTheirTables) {
+TEST(SingleScattering, PhaseFunctionsInFloatEqualTheirTables) {
   for (const Medium& medium : {Dusty(), MediumPreset("mars"), MediumPreset("earth")}) {
     const SingleScattering<float> fast(medium);
     const SingleScattering<double> exact(medium);
@@ -443,7 +443,7 @@ TEST(SingleScattering, PhaseFunctionsReadInFloatAreThoseOfTheirTables) {
 }
 
 // Hard case 12.
-TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
+TEST(SingleScattering, SharpPhaseFunctionsAreFiniteTowardsTheSun) {
   Medium medium = MediumPreset("earth");
   for (const double g : {0.999, -0.999}) {
     medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = g}};
@@ -471,7 +471,7 @@ ViewRay ThroughTheShadow(const Medium& medium, double depth_m) {
 }
 
 // Hard case 15.
-TEST(SingleScattering, ASegmentThroughThePlanetsShadowHasNoSeam) {
+TEST(SingleScattering, SegmentsThroughThePlanetsShadowHaveNoSeam) {
   const Medium medium = MediumPreset("earth");
   const SingleScattering<float> air(medium);
   for (const double depth_m : {-20e3, -100.0, -1.0, 1.0, 100.0, 3e3, 10e3, 18e3}) {
@@ -490,7 +490,7 @@ TEST(SingleScattering, ASegmentThroughThePlanetsShadowHasNoSeam) {
 }
 
 // Hard case 15.
-TEST(SingleScattering, WhereTheShadowOpensInASegmentItsLightDoesNotJump) {
+TEST(SingleScattering, LightIsContinuousWhereAShadowEnds) {
   const Medium medium = MediumPreset("earth");
   const SingleScattering<float> air(medium);
   // A millimetre of depth is 226 m of shadow; air there is lit through 38 optical depths and more.
@@ -524,7 +524,7 @@ TEST(SingleScattering, WhereTheShadowOpensInASegmentItsLightDoesNotJump) {
 }
 
 // Hard case 29.
-TEST(SingleScattering, ThickAirFadesToNothingWithoutFurtherEffort) {
+TEST(SingleScattering, ThickAirFadesToZeroWithEqualEffort) {
   const ViewRay level{2.0, 0.0, 0.5, 0.3};
   std::vector<std::size_t> nodes;
   for (const double depth : {0.05, 5.0, 50.0, 5000.0}) {
@@ -587,7 +587,7 @@ EdgeErrors ErrorsAtTheEdge(const Medium& medium) {
 }
 
 // Hard case 31.
-TEST(SingleScattering, AtTheEdgesOfTheRangesOfAMediumTheReferenceAgrees) {
+TEST(SingleScattering, AgreesWithTheReferenceAtTheLimitsOfMedia) {
   const auto edge = [](const char* preset, const auto& make) {
     Medium medium = MediumPreset(preset);
     make(medium);
@@ -630,7 +630,7 @@ TEST(SingleScattering, AtTheEdgesOfTheRangesOfAMediumTheReferenceAgrees) {
 }
 
 // Hard case 31.
-TEST(SingleScattering, TheSharpestLobesAgreeWithTheReference) {
+TEST(SingleScattering, SharpestLobesAgreeWithTheReference) {
   for (const double g : {-0.999, -0.5, 0.0, 0.999}) {
     for (const PhaseKind kind : {PhaseKind::kHenyeyGreenstein, PhaseKind::kCornetteShanks}) {
       Medium medium = MediumPreset("bruneton2017");
@@ -647,7 +647,7 @@ TEST(SingleScattering, TheSharpestLobesAgreeWithTheReference) {
 }
 
 // Hard case 31.
-TEST(SingleScattering, LayersBeyondThatAreRefusedWithTheRange) {
+TEST(SingleScattering, LayersBeyondTheLimitsAreRefusedWithTheRange) {
   for (const double beyond_m : {99.0, 2.1e5}) {
     Medium medium = MediumPreset("earth");
     medium.mie_scale_height_m = beyond_m;

@@ -68,7 +68,7 @@ TEST(ColumnTable, AgreesWithTheReferenceToOnePartInAMillion) {
   }
 }
 
-TEST(PathTracer, OrderOneIsTheIntegralOfSingleScattering) {
+TEST(PathTracer, FirstOrderIsTheIntegralOfSingleScattering) {
   const Medium medium = MediumPreset("bruneton2017");
   const std::pair<double, double> views[] = {
       {0.0, 20.0}, {0.0, 88.0}, {10000.0, 108.0}, {400000.0, 108.0}, {400000.0, 140.0}};
@@ -95,7 +95,7 @@ TEST(PathTracer, OrderOneIsTheIntegralOfSingleScattering) {
 
 // The truth is the mean of 2^17 paths, to 0.05 %. Paths whose roulette ignored the aureole were 1 %
 // too dark, four times their standard error, or one of them was as bright as hundreds.
-TEST(PathTracer, FindsTheLightOfANarrowPeakWithAnHonestError) {
+TEST(PathTracer, FindsTheLightOfANarrowPeakWithATrueError) {
   Medium mist = InScalarLight(MediumPreset("earth", {550.0}));
   mist.mie_phase = {DropletPhase(50.0)};
   mist.mie_extinction_per_m = {0.5 / 1200.0};
@@ -134,7 +134,7 @@ TEST(PathTracer, BandsOfDifferentPhaseFunctionsAreTracedTogether) {
   }
 }
 
-TEST(PathTracer, LightFromTheGroundAtTheEndOfASegmentIsLeftOut) {
+TEST(PathTracer, OmitsLightFromTheGroundAtTheEndOfASegment) {
   const Medium medium = Empty(1.0);
   ViewRay ray = RayFromAngles(1000.0, 180.0, 0.0, 60.0);
   EXPECT_NEAR(TraceRadiance(medium, ray).total[0], 0.5 / kPi, 1e-9)
@@ -169,7 +169,7 @@ TEST(PathTracer, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(totals.front(), totals.back());
 }
 
-TEST(PathTracer, StopsSoonWhenToldTo) {
+TEST(PathTracer, StopsSoonOnRequest) {
   PathOptions endless{.max_paths = std::size_t{1} << 40U, .relative_error = 0.0};
   std::atomic<int> asked = 0;
   endless.stopped = [&] { return ++asked > 40; };
@@ -179,7 +179,7 @@ TEST(PathTracer, StopsSoonWhenToldTo) {
   EXPECT_FALSE(traced.converged);
 }
 
-TEST(PathTracer, StandardErrorsAreTheScatterOfOtherSeeds) {
+TEST(PathTracer, StandardErrorsEqualTheScatterBetweenSeeds) {
   // Two orders are enough, because every order has the same statistics.
   constexpr int kSeeds = tests::ScaledDown(30, 10);
   const Medium medium = MediumPreset("bruneton2017");
@@ -199,7 +199,7 @@ TEST(PathTracer, StandardErrorsAreTheScatterOfOtherSeeds) {
 }
 
 // Hard case 30.
-TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
+TEST(PathTracer, ConservesEnergyWithoutAbsorption) {
   const Medium medium = WithoutAbsorption();
   const double top = medium.planet_radius_m + medium.atmosphere_height_m;
   const std::size_t bands = medium.wavelengths_nm.size();
@@ -245,7 +245,7 @@ TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
   }
 }
 
-TEST(PathTracer, RefusesWhatIsNotARayOrAnOption) {
+TEST(PathTracer, RefusesInvalidRaysAndOptions) {
   const Medium medium = MediumPreset("bruneton2017");
   const ViewRay ray = RayFromAngles(0.0, 10.0, 0.0, 20.0);
   EXPECT_THROW(static_cast<void>(TraceRadiance(medium, ray, {.max_order = 0})), InputError);
@@ -324,7 +324,7 @@ PolarisedScattering RoundMolecules(const Medium& medium) {
   return {std::vector<double>(medium.wavelengths_nm.size(), 0.0)};
 }
 
-TEST(PathTracedStokes, AreThePublishedOnesOfALayerOfMolecules) {
+TEST(PathTracedStokes, AgreeWithPublishedValuesOfAMolecularLayer) {
   for (const slab::Row& row : std::span(slab::kRows).last(tests::ScaledDown<std::size_t>(9, 3))) {
     const Medium medium = slab::Layer(row.tau, row.albedo);
     const PathTracedStokes traced = TraceStokes(medium, RoundMolecules(medium), slab::RayOf(row),
@@ -346,7 +346,7 @@ TEST(PathTracedStokes, AreThePublishedOnesOfALayerOfMolecules) {
 }
 
 // Light that was scattered once vibrates across the plane of view and sun.
-TEST(PathTracedStokes, OrderOneVibratesAcrossThePlaneOfTheSun) {
+TEST(PathTracedStokes, FirstOrderVibratesAcrossThePlaneOfTheSun) {
   Medium medium = tests::WithoutAerosol(MediumPreset("bruneton2017"));
   std::fill(medium.ground_albedo.begin(), medium.ground_albedo.end(), 0.0);
   constexpr double kDepolarisation = 0.03;
@@ -377,7 +377,7 @@ TEST(PathTracedStokes, OrderOneVibratesAcrossThePlaneOfTheSun) {
   }
 }
 
-TEST(PathTracedStokes, AerosolAndGroundThatDepolariseLeaveScalarLight) {
+TEST(PathTracedStokes, DepolarisingAerosolAndGroundLeaveScalarLight) {
   Medium medium = MediumPreset("hazy");
   std::fill(medium.rayleigh_scattering_per_m.begin(), medium.rayleigh_scattering_per_m.end(), 0.0);
   const ViewRay ray = RayFromAngles(100.0, 80.0, 30.0, 60.0);
@@ -393,7 +393,7 @@ TEST(PathTracedStokes, AerosolAndGroundThatDepolariseLeaveScalarLight) {
 }
 
 // One medium is described twice: as molecules and as small spheres.
-TEST(PathTracedStokes, SmallSpheresOfLorenzAndMieAreMolecules) {
+TEST(PathTracedStokes, SmallMieSpheresScatterLikeMolecules) {
   const Medium molecules = tests::WithoutAerosol(MediumPreset("bruneton2017"));
   Medium spheres = molecules;
   std::swap(spheres.mie_scattering_per_m, spheres.rayleigh_scattering_per_m);
@@ -422,7 +422,7 @@ TEST(PathTracedStokes, SmallSpheresOfLorenzAndMieAreMolecules) {
   }
 }
 
-TEST(PathTracedStokes, RefuseWhatIsNoScattering) {
+TEST(PathTracedStokes, RefuseInvalidScatteringMatrices) {
   const Medium medium = MediumPreset("bruneton2017");
   const ViewRay ray = RayFromAngles(0.0, 10.0, 0.0, 20.0);
   const SphereRatios lame{.a3 = {1.0, -1.0}, .b1 = {0.0}, .b2 = {0.0, 0.0}};

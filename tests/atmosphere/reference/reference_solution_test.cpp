@@ -20,7 +20,7 @@ Medium OnlyMolecules(double scattering_per_m, double scale_height_m) {
   return medium;
 }
 
-TEST(Reference, VerticalColumnIsThatOfThePlaneLayer) {
+TEST(Reference, VerticalColumnEqualsThatOfAPlaneLayer) {
   const Medium medium = OnlyMolecules(1e-5, 8000.0);
   const auto depth = reference::OpticalDepthAlong(medium, {0.0, 1.0, 1.0, 1.0});
   const double closed = 1e-5 * 8000.0 * (1.0 - std::exp(-medium.atmosphere_height_m / 8000.0));
@@ -28,7 +28,7 @@ TEST(Reference, VerticalColumnIsThatOfThePlaneLayer) {
   EXPECT_FALSE(depth.blocked);
 }
 
-TEST(Reference, UniformAirHasTheDepthOfItsChord) {
+TEST(Reference, UniformAirHasTheOpticalDepthOfItsChord) {
   const Medium medium = OnlyMolecules(1e-6, 199000.0);
   const ViewRay ray{0.0, 0.0, 1.0, 0.0, 1000.0};
   const auto depth = reference::OpticalDepthAlong(medium, ray);
@@ -52,7 +52,7 @@ TEST(Reference, ThinUniformAirScattersLengthTimesCoefficientTimesPhase) {
       << "attenuation is 1e-8, quadrature 1e-8";
 }
 
-TEST(Reference, StoredOpticalDepthsAgreeToOnePartInAHundredMillion) {
+TEST(Reference, StoredOpticalDepthsAgreeTo1e8) {
   const int compared =
       stored::Compare("transmittance", stored::All, [](const stored::Row& row, const Medium& air) {
         const auto depth = reference::OpticalDepthAlong(air, stored::RayOf(row));
@@ -66,7 +66,7 @@ TEST(Reference, StoredOpticalDepthsAgreeToOnePartInAHundredMillion) {
   EXPECT_GT(compared, 250);
 }
 
-TEST(Reference, StoredSingleScatteringAgreesToOnePartInTenMillion) {
+TEST(Reference, StoredSingleScatteringAgreesTo1e7) {
   int number = 0;
   const auto is_kept = [&](const stored::Row&) { return ++number % tests::ScaledDown(1, 5) == 0; };
   const int compared =

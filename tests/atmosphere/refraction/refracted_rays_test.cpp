@@ -27,7 +27,7 @@ constexpr double kMinute = kRadiansPerDegree / 60.0;
 
 constexpr std::array kHeights_m{0.0, 2.0, 100.0, 3000.0, 12e3, 40e3, 110e3, 400e3, 36e6};
 
-TEST(RefractedView, ApparentElevationIsThatOfTheRayEquation) {
+TEST(RefractedView, ApparentElevationFollowsTheRayEquation) {
   const Medium medium = MediumPreset("earth");
   for (const double height : kHeights_m) {
     const RefractedView view(medium, height);
@@ -46,7 +46,7 @@ TEST(RefractedView, ApparentElevationIsThatOfTheRayEquation) {
   }
 }
 
-TEST(RefractedView, TheSettingDiskIsAsFlatAsByTheRayEquation) {
+TEST(RefractedView, FlatteningOfTheSettingDiskFollowsTheRayEquation) {
   const Medium medium = MediumPreset("earth");
   const RayEquation equation(medium, PeckAndReeder(kHorizonWavelength_nm));
   constexpr double kDiameter = 32.0 * kMinute;
@@ -66,7 +66,7 @@ TEST(RefractedView, TheSettingDiskIsAsFlatAsByTheRayEquation) {
   }
 }
 
-TEST(RefractedView, TheUpperRimIsGreenAndBlueByTheDispersionOfAir) {
+TEST(RefractedView, UpperRimIsGreenAndBlueByDispersion) {
   const RefractedView view(MediumPreset("earth", {450.0, 550.0, 650.0}), 2.0);
   // Young (2000), Optics and Photonics News 11(3), 31-37: at the horizon green is lifted by some 10
   // to 20 arcseconds over red.
@@ -78,7 +78,7 @@ TEST(RefractedView, TheUpperRimIsGreenAndBlueByTheDispersionOfAir) {
   EXPECT_GT(green_to_blue, red_to_green);
 }
 
-TEST(RefractedView, TheHorizonLiesWhereRaysOfTheEquationJustMissTheGround) {
+TEST(RefractedView, HorizonFollowsTheRayEquation) {
   const Medium medium = MediumPreset("earth");
   const RayEquation equation(medium, PeckAndReeder(kHorizonWavelength_nm));
   for (const double height : {2.0, 100.0, 3000.0, 12e3, 400e3}) {
@@ -98,7 +98,7 @@ TEST(RefractedView, TheHorizonLiesWhereRaysOfTheEquationJustMissTheGround) {
   }
 }
 
-TEST(RefractedView, GroundNearByIsWhereStraightRaysFindIt) {
+TEST(RefractedView, NearbyGroundIsWhereStraightRaysMeetIt) {
   const Medium medium = MediumPreset("earth");
   const RefractedView view(medium, 2.0);
   for (const double degrees : {-10.0, -45.0, -89.0}) {
@@ -108,7 +108,7 @@ TEST(RefractedView, GroundNearByIsWhereStraightRaysFindIt) {
   EXPECT_FALSE(view.ToGround(0.01)) << "the sky";
 }
 
-TEST(RefractedView, TheSunShinesThroughTheColumnOfTheRefractedRay) {
+TEST(RefractedView, SunlightHasTheColumnOfTheRefractedRay) {
   const Medium medium = MediumPreset("earth");
   const RayEquation equation(medium, PeckAndReeder(kHorizonWavelength_nm)), straight(medium, 0.0);
   Medium clear = medium;
@@ -126,7 +126,7 @@ TEST(RefractedView, TheSunShinesThroughTheColumnOfTheRefractedRay) {
   }
 }
 
-TEST(RefractedView, NoAirBendsNothing) {
+TEST(RefractedView, WithoutAirRaysAreStraight) {
   Medium medium = MediumPreset("earth");
   for (double& scattering : medium.rayleigh_scattering_per_m) scattering = 0.0;
   const RefractedView view(medium, 1000.0);
@@ -136,7 +136,7 @@ TEST(RefractedView, NoAirBendsNothing) {
   EXPECT_EQ(view.MoreOpticalDepth(0.0, 0), 0.0);
 }
 
-TEST(RefractedView, AirThatWouldTrapRaysIsTakenToBendNone) {
+TEST(RefractedView, RaysAreStraightInAirThatWouldTrapThem) {
   Medium medium = MediumPreset("earth");
   medium.rayleigh_scale_height_m = 500.0;
   medium.rayleigh_deficit = {};
@@ -150,7 +150,7 @@ constexpr std::array kSunElevations_deg{0.1, 0.3, 1.0, 2.0, 5.0, 10.0};
 
 Medium EarthOfThreeBands() { return MediumPreset("earth", {450.0, 550.0, 650.0}); }
 
-TEST(RefractedBeam, IsWithinOnePerCentOfTheRayEquationInMolecules) {
+TEST(RefractedBeam, AgreesWithTheRayEquationInMoleculesToOnePercent) {
   const Medium medium = tests::MoleculesOf(EarthOfThreeBands());
   const SingleScattering<float> air(medium);
   const RefractedBeam beam(medium);
@@ -177,7 +177,7 @@ TEST(RefractedBeam, IsWithinOnePerCentOfTheRayEquationInMolecules) {
   }
 }
 
-TEST(RefractedBeam, IsWithinTwoPerCentOfRefractedRaysInAllAir) {
+TEST(RefractedBeam, AgreesWithRefractedRaysToTwoPercent) {
   const Medium medium = EarthOfThreeBands();
   const SingleScattering<float> air(medium);
   const RefractedBeam beam(medium);
@@ -193,7 +193,7 @@ TEST(RefractedBeam, IsWithinTwoPerCentOfRefractedRaysInAllAir) {
   }
 }
 
-TEST(RefractedBeam, BetweenItsNodesIsWithinThreePerCentOfRefractedRays) {
+TEST(RefractedBeam, InterpolatedValuesAgreeWithRaysToThreePercent) {
   const Medium medium = EarthOfThreeBands();
   const SingleScattering<float> air(medium);
   const RefractedBeam beam(medium);
@@ -210,7 +210,7 @@ TEST(RefractedBeam, BetweenItsNodesIsWithinThreePerCentOfRefractedRays) {
   }
 }
 
-TEST(RefractedBeam, FadesSmoothlyWhileTheSunSinks) {
+TEST(RefractedBeam, FadesSmoothlyAsTheSunSinks) {
   // A sun that sinks by a minute of arc: what is left falls by a share that changes by a tenth of
   // itself at most from each to the next, or by 1e-3 high up where it hardly falls.
   const Medium medium = EarthOfThreeBands();
@@ -231,14 +231,14 @@ TEST(RefractedBeam, FadesSmoothlyWhileTheSunSinks) {
   }
 }
 
-TEST(RefractedBeam, IsThatOfStraightRaysWhereNothingBends) {
+TEST(RefractedBeam, EqualsStraightRaysWithoutRefraction) {
   Medium medium = EarthOfThreeBands();
   medium.rayleigh_scattering_per_m.assign(3, 0.0);
   const SingleScattering<float> air(medium);
   EXPECT_EQ(RefractedBeam(medium).Left(air, 100.0, 0.01), air.TransmittanceToSpace(100.0, 0.01));
 }
 
-TEST(RefractedBeam, StaysBelowThatOfStraightRaysAtAnyHeight) {
+TEST(RefractedBeam, IsNeverBrighterThanStraightRays) {
   const Medium medium = EarthOfThreeBands();
   const RefractedBeam beam(medium);
   for (const double height_m : {-50.0, 0.0, 9e3, 39e3, 41e3, 99e3, 400e3}) {
@@ -266,7 +266,7 @@ LandSight SightAlong(const Medium& medium, double elevation_rad, double eye_m, d
           elevation_rad - std::atan2(up_m, end.state.x)};
 }
 
-TEST(LandLift, IsThatOfTheRayEquationFromEveryHeight) {
+TEST(LandLift, FollowsTheRayEquationFromEveryHeight) {
   const Medium medium = MediumPreset("earth");
   constexpr double kHighestLand_m = 9000.0;
   for (const double eye_m : {2.0, 100.0, 1e3, 3e3, 8e3, 12e3, 16e3, 25e3, 40e3, 100e3, 400e3}) {
@@ -291,13 +291,13 @@ TEST(LandLift, IsThatOfTheRayEquationFromEveryHeight) {
   }
 }
 
-TEST(LandLift, AMountainAHundredKilometresAwayLooksFourMinutesHigher) {
+TEST(LandLift, OfAMountain100KilometresAwayIsFourArcminutes) {
   const LandBend bend = LandBendOf(GentleAirOf(MediumPreset("earth")), 500.0);
   EXPECT_NEAR(LiftOfLand(bend, 500.0, 4000.0, 100e3) / kMinute, 4.2, 0.3)
       << "half of 100 km times the curvature, a sixth of the earth's";
 }
 
-TEST(LandLift, OfAPlanetIsAtLeastThatOfItsLandAndItsHorizon) {
+TEST(LandLift, LargestLiftCoversLandAndHorizon) {
   const Medium medium = MediumPreset("earth");
   const BendingAir air = GentleAirOf(medium);
   for (const double eye_m : {2.0, 1e3, 12e3, 400e3}) {
@@ -316,7 +316,7 @@ TEST(LandLift, OfAPlanetIsAtLeastThatOfItsLandAndItsHorizon) {
          "reach";
 }
 
-TEST(LandLift, NothingIsLiftedWithoutAir) {
+TEST(LandLift, IsZeroWithoutAir) {
   BendingAir air = GentleAirOf(MediumPreset("earth"));
   air.refractivity = 0.0;
   const LandBend bend = LandBendOf(air, 3000.0);
@@ -325,7 +325,7 @@ TEST(LandLift, NothingIsLiftedWithoutAir) {
   EXPECT_NEAR(bend.look_radius_km, bend.radius_km, 1e-3) << "a metre";
 }
 
-TEST(LandLift, ThePlanetLooksAsWideAsRefractedRaysShowItsHorizon) {
+TEST(LandLift, ApparentPlanetHasTheRefractedHorizon) {
   const Medium medium = MediumPreset("earth");
   const RayEquation equation(medium, PeckAndReeder(kHorizonWavelength_nm));
   for (const double eye_m : {2.0, 100.0, 3e3, 12e3, 400e3}) {

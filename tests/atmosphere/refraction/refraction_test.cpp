@@ -29,12 +29,12 @@ double AlmanacRefraction(double true_elevation_rad, double height_m) {
   return RefractionFromHeight(AlmanacAir(), true_elevation_rad, height_m);
 }
 
-TEST(Refraction, IsTheAlmanacs34MinutesAtTheHorizon) {
+TEST(Refraction, Is34ArcminutesAtTheHorizon) {
   EXPECT_NEAR(RefractionOfRay(0.0, 0.0) / kMinute, 34.0, 0.001) << "the scale height is chosen so";
   EXPECT_NEAR(AlmanacRefraction(-34.0 * kMinute, 0.0) / kMinute, 34.0, 0.001);
 }
 
-TEST(Refraction, TheInverseIsTheRayFromTheGround) {
+TEST(Refraction, InverseIsTheRayFromTheGround) {
   for (double apparent = 0.0; apparent < 90.0; apparent += apparent < 5.0 ? 0.05 : 0.5) {
     const double ray = RefractionOfRay(apparent * kDegree, 0.0);
     const double elevation = apparent * kDegree - ray;
@@ -42,7 +42,7 @@ TEST(Refraction, TheInverseIsTheRayFromTheGround) {
   }
 }
 
-TEST(Refraction, FarFromTheHorizonItIsTheSeriesOfErfa) {
+TEST(Refraction, AgreesWithErfaFarFromTheHorizon) {
   double a = 0.0;
   double b = 0.0;
   eraRefco(1013.25, 15.0, 0.0, 0.55, &a, &b);
@@ -61,7 +61,7 @@ double Bennett(double apparent_degrees) {
   return kMinute / std::tan(angle * kDegree) * (1013.25 / 1010.0) * (283.15 / 288.15);
 }
 
-TEST(Refraction, NearTheHorizonItIsBennetts) {
+TEST(Refraction, AgreesWithBennettNearTheHorizon) {
   for (double apparent = 0.0; apparent < 20.0; apparent += 0.25) {
     const double bennett = Bennett(apparent);
     EXPECT_NEAR(AlmanacRefraction(apparent * kDegree - bennett, 0.0) / kMinute, bennett / kMinute,
@@ -103,7 +103,7 @@ double RayThroughStandardAtmosphere(double apparent_rad, double eye_m = 0.0) {
   return sum;
 }
 
-TEST(Refraction, StandardAtmosphereBendsRaysAsMuch) {
+TEST(Refraction, AgreesWithTheStandardAtmosphere) {
   for (const double apparent : {0.0, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 45.0}) {
     EXPECT_NEAR(RefractionOfRay(apparent * kDegree, 0.0) / kMinute,
                 RayThroughStandardAtmosphere(apparent * kDegree) / kMinute, 1.0)
@@ -149,7 +149,7 @@ std::vector<BendingAir> DifferentAirs() {
 }
 
 // The bound of observer_refraction.h.
-TEST(ObserverRefraction, IsTheIntegralOverTheElevationInEveryAir) {
+TEST(ObserverRefraction, IsTheIntegralOverTheElevation) {
   for (const BendingAir& air : DifferentAirs()) {
     ASSERT_TRUE(GentlyBends(air));
     const double most = 2e-6 * BendingInParts(air, 0.0, 0.0) + 1e-15;
@@ -165,7 +165,7 @@ TEST(ObserverRefraction, IsTheIntegralOverTheElevationInEveryAir) {
   }
 }
 
-TEST(ObserverRefraction, TheInverseFindsTheRayInEveryAir) {
+TEST(ObserverRefraction, InverseFindsTheRay) {
   for (const BendingAir& air : DifferentAirs()) {
     for (const double share : {0.0, 1e-4, 0.03, 0.3, 1.5}) {
       const ObserverRefraction table(air, share * air.top_m);
@@ -181,7 +181,7 @@ TEST(ObserverRefraction, TheInverseFindsTheRayInEveryAir) {
 }
 
 // Tables are kept from call to call: an answer must not depend on the calls before it.
-TEST(ObserverRefraction, AnAnswerDoesNotDependOnEarlierOnes) {
+TEST(ObserverRefraction, ResultsDoNotDependOnEarlierCalls) {
   const double alone = ObserverRefraction(AlmanacAir(), 1234.0).AtTrue(0.01);
   for (int i = 0; i < 3; ++i) {
     for (const BendingAir& air : DifferentAirs()) (void)RefractionFromHeight(air, 0.01, 1234.0 + i);
@@ -195,7 +195,7 @@ double Saemundsson(double true_degrees) {
   return 1.02 * kMinute / std::tan(angle * kDegree) * (1013.25 / 1010.0) * (283.15 / 288.15);
 }
 
-TEST(Refraction, OfATrueElevationItIsSaemundssons) {
+TEST(Refraction, OfTrueElevationsAgreesWithSaemundsson) {
   for (double elevation = -0.5; elevation < 20.0; elevation += 0.25) {
     EXPECT_NEAR(AlmanacRefraction(elevation * kDegree, 0.0) / kMinute,
                 Saemundsson(elevation) / kMinute, 0.35)
@@ -203,7 +203,7 @@ TEST(Refraction, OfATrueElevationItIsSaemundssons) {
   }
 }
 
-TEST(Refraction, TheAirOfTheEarthPresetsLiftsASunAsAlmanacsDo) {
+TEST(Refraction, OfEarthPresetsAgreesWithAlmanacs) {
   for (const char* preset : {"earth", "clear-mountain", "hazy"}) {
     const BendingAir air = GentleAirOf(MediumPreset(preset));
     EXPECT_NEAR(RefractionSeenAt(air, 0.0, 0.0) / kMinute, 34.0, 0.5) << preset;
@@ -221,7 +221,7 @@ TEST(Refraction, TheAirOfTheEarthPresetsLiftsASunAsAlmanacsDo) {
   }
 }
 
-TEST(Refraction, AloftRaysBendAsInTheStandardAtmosphere) {
+TEST(Refraction, FromHeightsAgreesWithTheStandardAtmosphere) {
   for (const double height_m : {1e3, 3e3, 10e3}) {
     for (const double apparent : {0.0, 0.5, 1.0, 3.0, 10.0}) {
       EXPECT_NEAR(RefractionOfRay(apparent * kDegree, height_m) / kMinute,
@@ -232,7 +232,7 @@ TEST(Refraction, AloftRaysBendAsInTheStandardAtmosphere) {
   }
 }
 
-TEST(Refraction, DipOfTheSeaIsTheNauticalAlmanacs) {
+TEST(Refraction, DipOfTheSeaAgreesWithTheNauticalAlmanac) {
   // Bowditch (2017), American Practical Navigator, table 14: dip 1.76' sqrt(height in metres).
   for (const double height : {2.0, 10.0, 100.0, 1000.0, 4000.0}) {
     EXPECT_NEAR(SeaHorizonFrom(height).dip_rad / (1.76 * std::sqrt(height) * kMinute), 1.0, 0.02)
@@ -242,7 +242,7 @@ TEST(Refraction, DipOfTheSeaIsTheNauticalAlmanacs) {
   EXPECT_EQ(SeaHorizonFrom(-430.0).dip_rad, 0.0) << "the shore of the Dead Sea";
 }
 
-TEST(Refraction, SunsetFromAMountainIsTheExplanatorySupplements) {
+TEST(Refraction, SunsetFromAMountainAgreesWithTheAlmanac) {
   // Explanatory Supplement to the Astronomical Almanac (1992), section 9.31: rise and set at
   // zenith distance 90 degrees 50' + 2.12' sqrt(height in metres).
   for (const double height : {10.0, 100.0, 1000.0, 3776.0}) {
@@ -251,7 +251,7 @@ TEST(Refraction, SunsetFromAMountainIsTheExplanatorySupplements) {
   }
 }
 
-TEST(Refraction, FromSpaceTheHorizonIsLiftedByTwiceTheRefraction) {
+TEST(Refraction, LiftsTheHorizonFromSpaceByTwiceTheRefraction) {
   const double height = 400e3;
   const SeaHorizon horizon = SeaHorizonFrom(height);
   const double geometric = std::acos(kEarthMeanRadius_m / (kEarthMeanRadius_m + height));
@@ -260,7 +260,7 @@ TEST(Refraction, FromSpaceTheHorizonIsLiftedByTwiceTheRefraction) {
   EXPECT_EQ(AlmanacRefraction(0.0, height), 0.0) << "this ray never meets the air";
 }
 
-TEST(Refraction, FromAnyHeightItIsContinuousAndKeepsTheOrder) {
+TEST(Refraction, IsContinuousAndMonotonicFromAnyHeight) {
   for (const double height : {0.0, 2.0, 900.0, 3776.0, 11e3, 400e3, 36e6}) {
     const SeaHorizon horizon = SeaHorizonFrom(height);
     const double horizon_deg = horizon.true_elevation_rad / kDegree;
@@ -286,7 +286,7 @@ TEST(Refraction, FromAnyHeightItIsContinuousAndKeepsTheOrder) {
   }
 }
 
-TEST(ApparentSun, IsHigherThanTheSunByRefractionAtTheEye) {
+TEST(ApparentSun, IsHigherByTheRefractionAtTheEye) {
   const UtcTime evening = ParseInstant("2026-06-21T18:50:00Z");
   for (const double height_m : {0.0, 10e3}) {
     const Place eye = CheckedPlace({47.0, 8.0, height_m});
@@ -363,14 +363,14 @@ TEST(LiftForAir, GivesAnEveningSkyTheLightOfRefractedRays) {
   }
 }
 
-TEST(LiftForAir, ServesAirBetterThanTheRefractionThatIsSeen) {
+TEST(LiftForAir, IsBetterForAirThanTheApparentRefraction) {
   const RefractedSky sky(-1.0);
   const double seen = RefractionFromHeight(Evening().air(), -kRadiansPerDegree, 0.0);
   EXPECT_LT(sky.ErrorsOf(LiftAt(-1.0)).rms, 0.4 * sky.ErrorsOf(seen).rms)
       << "from where it is seen, the sun lights the air by a third too much";
 }
 
-TEST(LiftForAir, GivesDuskMoreOfTheLightOfRefractedRaysThanNoLift) {
+TEST(LiftForAir, ImprovesDuskComparedWithNoLift) {
   for (const double truly_deg : {-5.0, -6.5, -8.0}) {
     const RefractedSky sky(truly_deg);
     const Bands with = sky.ErrorsOf(LiftAt(truly_deg)).worst, without = sky.ErrorsOf(0.0).worst;
@@ -384,7 +384,7 @@ TEST(LiftForAir, GivesDuskMoreOfTheLightOfRefractedRaysThanNoLift) {
 
 using Bands = std::array<double, 3>;
 
-TEST(LiftForAir, RisesSmoothlyToAFifthOfTheHorizontalRefraction) {
+TEST(LiftForAir, GrowsSmoothlyToAFifthOfHorizontalRefraction) {
   const auto lift = [air = AlmanacAir()](double minutes) {
     return LiftForAir(air, minutes * kMinute) / kMinute;
   };
@@ -400,7 +400,7 @@ TEST(LiftForAir, RisesSmoothlyToAFifthOfTheHorizontalRefraction) {
   }
 }
 
-TEST(LiftForAir, IsNothingWithoutAir) {
+TEST(LiftForAir, IsZeroWithoutAir) {
   BendingAir none = AlmanacAir();
   none.refractivity = 0.0;
   for (const double elevation_deg : {10.0, 0.0, -1.0, -10.0})

@@ -63,13 +63,13 @@ TEST(InstructionSet, EveryAvailableSetGivesTheScalarLight) {
   ExpectTheScalarLightFromEverySet<double>();
 }
 
-TEST(InstructionSet, TheScalarSetComputesWithOneNumberAtATime) {
+TEST(InstructionSet, ScalarSetUsesOneNumberAtATime) {
   const InstructionSetScope scalar(InstructionSet::kScalar);
   EXPECT_EQ(Kernel<RayKernel<float>>().lanes, 1U);
   EXPECT_EQ(Kernel<RayKernel<double>>().lanes, 1U);
 }
 
-TEST(InstructionSet, TheBestSetIsUsedUnlessTheEnvironmentNamesAnother) {
+TEST(InstructionSet, BestSetIsUsedUnlessTheEnvironmentNamesAnother) {
   const auto& sets = AvailableInstructionSets();
   ASSERT_GE(sets.size(), 2U);
   EXPECT_EQ(sets.front(), InstructionSet::kScalar);
@@ -79,7 +79,7 @@ TEST(InstructionSet, TheBestSetIsUsedUnlessTheEnvironmentNamesAnother) {
                                                  : std::string(forced));
 }
 
-TEST(InstructionSet, AScopeEndsWithTheSetBeforeIt) {
+TEST(InstructionSet, AScopeRestoresTheEarlierSet) {
   const InstructionSet before = CurrentInstructionSet();
   {
     const InstructionSetScope scope(InstructionSet::kBaseline);
@@ -100,7 +100,7 @@ TEST(InstructionSet, AScopeEndsWithTheSetBeforeIt) {
   }
 }
 
-TEST(InstructionSetDeathTest, TheEnvironmentChoosesEveryAvailableSet) {
+TEST(InstructionSetDeathTest, EnvironmentCanSelectEveryAvailableSet) {
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
   for (const InstructionSet set : AvailableInstructionSets()) {
     EXPECT_EXIT(ChooseByName(std::string(NameOf(set)), set), ::testing::ExitedWithCode(0), "")

@@ -21,7 +21,7 @@ constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 double Distance(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }
 
-TEST(Geodesy, AxesOfTheEarthAreWhereWgs84PutsThem) {
+TEST(Geodesy, AxesOfTheEarthAreThoseOfWgs84) {
   const double b = kWgs84.equatorial_radius_m * (1.0 - kWgs84.flattening);
   EXPECT_NEAR(b, 6356752.314245, 1e-6) << "semi-minor axis, NIMA TR8350.2 table 3.1";
   const auto at = [](double latitude, double longitude, double height) {
@@ -45,7 +45,7 @@ glm::dvec3 TextbookEcef(long double latitude_rad, long double longitude_rad, dou
           value((n * (1.0L - e2) + height_m) * sine)};
 }
 
-TEST(Geodesy, EcefIsTheTextbookFormula) {
+TEST(Geodesy, EcefFollowsTheTextbookFormula) {
   for (const double latitude : {-89.9, -45.0, -0.001, 12.5, 35.3606, 60.0, 89.999}) {
     for (const double longitude : {-179.999, -74.0, 0.0, 7.6, 138.7274, 179.5}) {
       for (const double height : {-11000.0, 0.0, 3776.0, 400e3, 36e6}) {
@@ -59,7 +59,7 @@ TEST(Geodesy, EcefIsTheTextbookFormula) {
   }
 }
 
-TEST(Geodesy, EcefAndBackIsTheSamePlaceWithinTenNanometres) {
+TEST(Geodesy, EcefRoundTripKeepsPlacesWithinTenNanometres) {
   for (const Ellipsoid& ellipsoid :
        {kWgs84, Ellipsoid{6371000.0, 0.0}, Ellipsoid{3396190.0, 0.00589}}) {
     for (const double latitude : {-90.0, -89.99999, -45.0, -1e-9, 0.0, 46.55, 89.9, 90.0}) {
@@ -79,7 +79,7 @@ TEST(Geodesy, EcefAndBackIsTheSamePlaceWithinTenNanometres) {
 }
 
 // Hard case 27.
-TEST(Geodesy, AntimeridianIsOneMeridianToTheLastBit) {
+TEST(Geodesy, Longitudes180AndMinus180AreBitwiseEqual) {
   const Place east{-16.5, 180.0, 120.0};
   for (const Place& west : {CheckedPlace({-16.5, -180.0, 120.0}), Place{-16.5, -180.0, 120.0},
                             PlaceFromRadians(east.latitude_rad(), -kPi, 120.0),
@@ -118,7 +118,7 @@ TEST(Geodesy, LocalFrameIsARightHandedRotation) {
 }
 
 // Hard case 16.
-TEST(Geodesy, LocalFrameMovesPointsAndBringsThemBack) {
+TEST(Geodesy, LocalFrameIsInvertible) {
   const LocalFrame frame(kWgs84, Place{35.5, 138.76, 900.0});
   const Place above{35.5, 138.76, 1900.0};
   EXPECT_LT(Distance(frame.EnuFromGeodetic(above).xyz, {0, 0, 1000}), 1e-8)
@@ -128,7 +128,7 @@ TEST(Geodesy, LocalFrameMovesPointsAndBringsThemBack) {
   EXPECT_LT(Distance(frame.EnuFromGeodetic(frame.GeodeticFromEnu(point)).xyz, point.xyz), 2e-8);
 }
 
-TEST(Geodesy, AMountain150KilometresAwaySinksBelowTheHorizontal) {
+TEST(Geodesy, AMountain150KilometresAwayIsBelowTheHorizontal) {
   // On the equator looking along it the earth is a circle of radius a: a point at the arc s and the
   // height h lies at x = (a + h) sin(s / a), z = (a + h) cos(s / a) - a.
   const double a = kWgs84.equatorial_radius_m;
@@ -142,7 +142,7 @@ TEST(Geodesy, AMountain150KilometresAwaySinksBelowTheHorizontal) {
   EXPECT_NEAR(seen.z, 1500.0 - 1764.0, 1.0) << "s^2 / 2 a = 1763.9 m: the peak is out of sight";
 }
 
-TEST(Geodesy, AMountainToTheNorthSinksWithTheMeridianCurvature) {
+TEST(Geodesy, AMountainInTheNorthSinksWithMeridianCurvature) {
   // Along a meridian the drop is s^2 / 2 M to first order, M = a (1 - e^2) / w^3.
   const Place here{45.0, 7.0, 0.0};
   const double f = kWgs84.flattening;
@@ -201,7 +201,7 @@ TEST(Geodesy, ImpossiblePlacesAreRefusedByName) {
 }
 
 // Hard case 3.
-TEST(Geodesy, NonsenseIsNeverAnsweredWithAPlace) {
+TEST(Geodesy, NonFiniteInputGivesNoPlace) {
   EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {91.7, 0.0, 0.0}), InputError);
   EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {kNotANumber, 0.0, 0.0}), InputError);
   EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {0.0, kInfinite, 0.0}), InputError);
@@ -211,7 +211,7 @@ TEST(Geodesy, NonsenseIsNeverAnsweredWithAPlace) {
   EXPECT_TRUE(std::isnan(GeodeticFromEcef(kWgs84, {{kNotANumber, 0.0, 0.0}}).height_m));
 }
 
-TEST(Geodesy, TheCentreOfTheEarthIsUnderTheNorthPole) {
+TEST(Geodesy, CentreOfTheEarthIsBelowTheNorthPole) {
   const Place centre = GeodeticFromEcef(kWgs84, {});
   EXPECT_EQ(centre.latitude_rad(), kPi / 2);
   EXPECT_NEAR(centre.height_m, -6356752.314245, 1e-6);

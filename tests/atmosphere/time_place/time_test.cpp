@@ -23,7 +23,7 @@ std::string FaultOfInstant(std::string_view text,
 }
 
 // Hard case 25.
-TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
+TEST(Time, TimesAreParsedInUtcAndWithOffsets) {
   const UtcTime expected{61212, 4 * 3600.0};
   EXPECT_EQ(ParseInstant("2026-06-21T04:00:00Z"), expected) << "MJD 61212 is 2026-06-21";
   EXPECT_EQ(ParseInstant("2026-06-21T13:00:00+09:00"), expected);
@@ -56,7 +56,7 @@ void ExpectRefused(std::span<const RefusedInstant> instants) {
     EXPECT_THAT(FaultOfInstant(text, zone), testing::HasSubstr(fault)) << text;
 }
 
-TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
+TEST(Time, InvalidTimesAreRefusedWithTextAndReason) {
   const RefusedInstant instants[] = {
       {"2024-02-30T00:00:00Z",
        "time \"2024-02-30T00:00:00Z\": the day in month 2 of 2024 is 30; it must lie in [1, 29]"},
@@ -123,7 +123,7 @@ TEST(Time, TheLeapSecondOf2016Exists) {
 }
 
 // Hard case 25.
-TEST(Time, ThereAre27LeapSecondsUntil2026AndNoOthersAreAccepted) {
+TEST(Time, Exactly27LeapSecondsUntil2026AreAccepted) {
   int leap_seconds = 0;
   for (int day = 15020; day < 61406; ++day) leap_seconds += DayLength(day) > 86400.0 ? 1 : 0;
   EXPECT_EQ(leap_seconds, 27) << "IERS bulletin C: 1972-06-30 to 2016-12-31";
@@ -133,7 +133,7 @@ TEST(Time, ThereAre27LeapSecondsUntil2026AndNoOthersAreAccepted) {
 }
 
 // Hard case 26.
-TEST(Time, LocalTimesInAGapOrAnOverlapAskForTheOffset) {
+TEST(Time, LocalTimesInAGapOrOverlapNeedTheOffset) {
   const RefusedInstant instants[] = {
       {"2026-03-29T02:30:00",
        "time \"2026-03-29T02:30:00\": clocks in Europe/Berlin skip this time (the offset goes from "
@@ -152,7 +152,7 @@ TEST(Time, LocalTimesInAGapOrAnOverlapAskForTheOffset) {
   ExpectRefused(instants);
 }
 
-TEST(Time, ZonesSayTheOffsetAlsoAfterTheirTablesEndIn2037) {
+TEST(Time, ZonesKnowOffsetsAfterTheirTablesEndIn2037) {
   const std::pair<const char*, const char*> in_berlin[] = {
       {"2026-10-25T02:30:00+02:00", "2026-10-25T00:30:00Z"},
       {"2026-03-29T01:59:59", "2026-03-29T00:59:59Z"},
@@ -195,7 +195,7 @@ TEST(Time, RulesOfZoneFilesAreUnderstood) {
   }
 }
 
-TEST(Time, LocalMeanTimeWithSecondsSurvivesTheRoundTrip) {
+TEST(Time, LocalMeanTimeSurvivesARoundTrip) {
   const UtcTime instant = ParseInstant("1950-06-01T12:00:00Z");
   const std::string text = FormatInZone(instant, "Africa/Monrovia");
   EXPECT_EQ(text, "1950-06-01T11:15:30-00:44:30") << "Liberia until 1972";
@@ -214,7 +214,7 @@ TEST(Time, FormattingRoundsAndCarries) {
   EXPECT_THROW((void)FormatInZone({}, "../../etc/passwd"), InputError);
 }
 
-TEST(Time, FormattedInstantsAreReadBack) {
+TEST(Time, FormattedTimesAreParsedBack) {
   for (int day = 15020; day <= 88433; day += 911) {
     for (const double second : {0.0, 1.0, 43199.0, 86399.0}) {
       const UtcTime instant{day, second};
@@ -257,7 +257,7 @@ TEST(Time, DurationsAreNumbersWithUnits) {
 
 using TimeInOtherLocale = TemporaryFolder;
 
-TEST_F(TimeInOtherLocale, ADecimalCommaChangesNothing) {
+TEST_F(TimeInOtherLocale, IsNotAffectedByADecimalComma) {
   const tests::CommaLocale locale(folder_);
   EXPECT_NEAR(ParseInstant("2026-06-21T04:00:30.125Z").second_of_day, 14430.125, 1e-9);
   EXPECT_EQ(ParseDuration("1.5s"), 1.5);
@@ -265,7 +265,7 @@ TEST_F(TimeInOtherLocale, ADecimalCommaChangesNothing) {
   EXPECT_EQ(FormatInZone({61212, 14400.0}, "Europe/Zurich"), "2026-06-21T06:00:00+02:00");
 }
 
-TEST(Time, DeltaTIsTheObservedOne) {
+TEST(Time, DeltaTAgreesWithObservations) {
   const auto at = [](const char* text) { return DeltaT(ParseInstant(text)); };
   // Espenak and Meeus (2006), table of observed values, rounded there to 0.01 s before 1955.
   EXPECT_NEAR(at("1900-01-01T00:00:00Z"), -2.7, 0.5);
@@ -280,7 +280,7 @@ TEST(Time, DeltaTIsTheObservedOne) {
       << "the forecast less its error of 2027";
 }
 
-TEST(Time, DeltaTHasNoJumpWhereModelsMeet) {
+TEST(Time, DeltaTIsContinuousBetweenModels) {
   for (const char* text :
        {"1920-01-01T12:00:00Z", "1941-01-01T00:00:00Z", "1950-01-01T00:00:00Z",
         "1960-01-01T00:00:00Z", "2027-01-01T00:00:00Z", "2050-01-01T00:00:00Z"}) {

@@ -64,7 +64,7 @@ PanoramaOptions Small(int width = 8, int height = 4) {
   return options;
 }
 
-TEST(Arguments, OfTheSunAreRefusedByNameWhereverASunIsTaken) {
+TEST(Arguments, InvalidSunsAreRefusedByNameEverywhere) {
   const auto with = [](double SunInSky::*member, double value) {
     SunInSky sun;
     sun.*member = value;
@@ -96,7 +96,7 @@ TEST(Arguments, OfTheSunAreRefusedByNameWhereverASunIsTaken) {
   }
 }
 
-TEST(Arguments, TheSunForTheAirIsNeverBeyondTheNadirOrTheZenith) {
+TEST(Arguments, SunForAirStaysBetweenNadirAndZenith) {
   for (const double sign : {-1.0, 1.0}) {
     for (const double lower_deg : {0.5, 45.0, 90.0}) {
       SunInSky sun;
@@ -112,7 +112,7 @@ TEST(Arguments, TheSunForTheAirIsNeverBeyondTheNadirOrTheZenith) {
   }
 }
 
-TEST(Arguments, OfPanoramasAreRefusedByName) {
+TEST(Arguments, InvalidPanoramaOptionsAreRefusedByName) {
   const auto fault = [](const std::function<void(PanoramaOptions&)>& change) {
     PanoramaOptions options = Small();
     change(options);
@@ -132,7 +132,7 @@ TEST(Arguments, OfPanoramasAreRefusedByName) {
               HasSubstr("centre"));
 }
 
-TEST(Arguments, TheSmallestSunIsDrawnWithAllItsLight) {
+TEST(Arguments, SmallestSunIsDrawnWithAllItsLight) {
   const auto light = [](double elevation_deg, double radius_deg, bool draws) {
     PanoramaOptions options = Small(16, 8);
     options.sun.elevation_deg = elevation_deg;
@@ -174,7 +174,7 @@ TEST(Arguments, PointsOutOfRangeAreRefusedWithTheirAltitude) {
   EXPECT_EQ(Earth().Radiance({.up_m = 1e12}, up, up)[0], 0.0F) << "space";
 }
 
-TEST(Arguments, DirectionsOfAnyLengthButZeroAreTaken) {
+TEST(Arguments, DirectionsOfAnyLengthExceptZeroAreAccepted) {
   const LocalPoint eye{.up_m = 2.0};
   const Direction sun{.north = 1.0, .up = 1.0};
   const float expected = Earth().Radiance(eye, sun, sun)[0];
@@ -207,7 +207,7 @@ TEST(Arguments, AnglesAndSpectraOutOfRangeAreRefused) {
   EXPECT_THAT(tests::FaultOf([&] { return Atmosphere().ColourOf(light); }), HasSubstr("band 2"));
 }
 
-TEST(Arguments, WavelengthsWithoutColoursAreRefusedWhereColoursAreNeeded) {
+TEST(Arguments, WavelengthsWithoutColoursAreRefusedForPictures) {
   for (const std::vector<double>& set : {std::vector<double>{200.0, 210.0},
                                          {550.0},
                                          {300.0, 310.0, 320.0},
@@ -234,7 +234,7 @@ TEST(Arguments, WavelengthsWithoutColoursAreRefusedWhereColoursAreNeeded) {
 
 class ApiTableArguments : public TemporaryFolder {};
 
-TEST_F(ApiTableArguments, ThatAreNoNamedValueAreRefused) {
+TEST_F(ApiTableArguments, InvalidEnumeratorsAreRefused) {
   EXPECT_THAT(tests::FaultOf([&] {
                 return BakeTables(Atmosphere(), folder_ / "t", static_cast<BakeQuality>(9)), 0;
               }),
@@ -248,7 +248,7 @@ TEST_F(ApiTableArguments, ThatAreNoNamedValueAreRefused) {
 }
 
 // The product of two unit vectors exceeds 1 by rounding for a sixth of such places.
-TEST(Sky, IsLitByASunExactlyInTheZenith) {
+TEST(Sky, AcceptsASunExactlyInTheZenith) {
   const double radius_m = Earth().atmosphere().planet_radius_m();
   for (int i = 0; i < 200; ++i) {
     LocalPoint point{-3e5 + 3011.0 * i, 2.9e5 - 2903.0 * i, 0.0};

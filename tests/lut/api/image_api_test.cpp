@@ -34,7 +34,7 @@ HdrImage Gradient() {
 
 class ApiImage : public TemporaryFolder {};
 
-TEST_F(ApiImage, ComesBackFromItsFile) {
+TEST_F(ApiImage, SurvivesARoundTripThroughItsFile) {
   HdrImage image = Gradient();
   image.is_panorama = true;
   WriteExr(folder_ / "a.exr", image);
@@ -49,7 +49,7 @@ TEST_F(ApiImage, ComesBackFromItsFile) {
   EXPECT_EQ(read.metadata.at("alpenglow.utc"), "2026-06-21T04:00:00Z");
 }
 
-TEST_F(ApiImage, SizesLayersAndMetadataThatNoFileCanHoldAreRefused) {
+TEST_F(ApiImage, SizesLayersAndMetadataBeyondFilesAreRefused) {
   const auto refuses = [&](const auto& change) {
     HdrImage image = Gradient();
     change(image);
@@ -73,7 +73,7 @@ TEST_F(ApiImage, SizesLayersAndMetadataThatNoFileCanHoldAreRefused) {
   EXPECT_THROW(WritePng(folder_ / "a.png", image), InputError);
 }
 
-TEST_F(ApiImage, LeavesTheThreadsOfOpenExrToTheProcess) {
+TEST_F(ApiImage, KeepsTheNumberOfThreadsOfOpenExr) {
   for (const int threads : {0, 1, 3}) {
     Imf::setGlobalThreadCount(threads);
     WriteExr(folder_ / "a.exr", Gradient());
@@ -82,7 +82,7 @@ TEST_F(ApiImage, LeavesTheThreadsOfOpenExrToTheProcess) {
   Imf::setGlobalThreadCount(0);
 }
 
-TEST_F(ApiImage, IsShownAsByTheLayerBelow) {
+TEST_F(ApiImage, IsDevelopedAsByTheLayerBelow) {
   const HdrImage image = Gradient();
   HdrImage light(8, 4);
   light.rgb = image.rgb;

@@ -229,17 +229,17 @@ void ExpectTheSame(const Ways& ways, const Bounds& bounds) {
   }
 }
 
-class TheLightOf : public TemporaryFolder, public testing::WithParamInterface<std::string> {};
+class SameLight : public TemporaryFolder, public testing::WithParamInterface<std::string> {};
 
 // The largest differences of panoramas and of the viewer are those of thin maritime air under a low
 // sun, 0.6 %: the glow around the sun is that of one column of aerosol. Tables of the quality
 // "preview" have moments to degree 2 in thin air, and 6 azimuths of light scattered once.
-TEST_P(TheLightOf, AnAirIsTheSameByEveryWay) {
+TEST_P(SameLight, OfPresetsIsGivenByEveryMethod) {
   const Ways ways(Atmosphere::FromToml(GetParam()), folder_ / "baked");
   ExpectTheSame(ways, {1e-3, 7.5e-3, 7.5e-3, 0.08});
 }
 
-INSTANTIATE_TEST_SUITE_P(PresetsAndMixtures, TheLightOf, testing::ValuesIn(AllAir()));
+INSTANTIATE_TEST_SUITE_P(PresetsAndMixtures, SameLight, testing::ValuesIn(AllAir()));
 
 /// Text of air that throws light back in a narrow lobe, of thick mist, and of a small planet with
 /// tall air.
@@ -258,23 +258,24 @@ std::vector<std::string> OddAir() {
   return texts;
 }
 
-class TheLightOfOddAir : public TheLightOf {};
+class SameLightOfExtremeAir : public SameLight {};
 
 // The bound of panoramas is that of usual air. The other ways differ by 1 % by day; the viewer by 5
 // % in the twilight of the small planet and by 3.5 % in that of the narrower lobe, and the tables
 // by
 // 10 % around the sun behind that lobe.
-TEST_P(TheLightOfOddAir, IsTheSameByEveryWay) {
+TEST_P(SameLightOfExtremeAir, IsGivenByEveryMethod) {
   const Ways ways(Atmosphere::FromToml(GetParam()), folder_ / "baked");
   ExpectTheSame(ways, {3e-3, 0.012, 0.06, 0.12});
 }
 
-INSTANTIATE_TEST_SUITE_P(LobesMistAndSmallPlanets, TheLightOfOddAir, testing::ValuesIn(OddAir()));
+INSTANTIATE_TEST_SUITE_P(LobesMistAndSmallPlanets, SameLightOfExtremeAir,
+                         testing::ValuesIn(OddAir()));
 
 class BakedTables : public TemporaryFolder {};
 
-// Sanitizers see smaller tables, with the bound that TheLightOf has for them.
-TEST_F(BakedTables, OfStandardQualityHaveTheLightOfDust) {
+// Sanitizers see smaller tables, with the bound that SameLight has for them.
+TEST_F(BakedTables, OfStandardQualityAreAccurateInDust) {
   constexpr BakeQuality kQuality = tests::ScaledDown(BakeQuality::kStandard, BakeQuality::kPreview);
   constexpr double kBound = tests::ScaledDown(0.02, 0.08);
   const Atmosphere mars = Atmosphere::Preset("mars");
@@ -328,12 +329,12 @@ Aureole AureoleOf(const Atmosphere& atmosphere, double sun_elevation_deg) {
   return aureole;
 }
 
-class AnAureole : public testing::TestWithParam<const char*> {};
+class Aureole : public testing::TestWithParam<const char*> {};
 
 // The bound is a third more than measured with g = 0.999. Beyond six degrees below the sun the sky
 // gets brighter towards the horizon again.
 // Hard cases 12, 23, 31.
-TEST_P(AnAureole, OfASharpPhaseFunctionFallsSteadily) {
+TEST_P(Aureole, OfASharpPhaseFunctionFallsSteadily) {
   constexpr std::size_t kSteady = 6;
   for (const double sun_elevation_deg : {60.5, 29.5}) {
     const Aureole aureole =
@@ -352,7 +353,7 @@ TEST_P(AnAureole, OfASharpPhaseFunctionFallsSteadily) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    SharpPhases, AnAureole,
+    SharpPhases, Aureole,
     testing::Values(
         "phase = \"henyey-greenstein\"\ng = 0.95\n", "phase = \"henyey-greenstein\"\ng = 0.99\n",
         "phase = \"henyey-greenstein\"\ng = 0.999\n",

@@ -59,7 +59,7 @@ ViewRay RayTo(const LocalPoint& object, const Direction& to_sun) {
   return RayFrom(AltitudeOf(kEye, radius_m), way / length_m, UnitVectorOf(to_sun), length_m);
 }
 
-TEST(Version, IsTheReleaseThatTheProgramsPrint) {
+TEST(Version, EqualsThatOfThePrograms) {
   EXPECT_NE(lut::ProducerText().find(std::string(Version())), std::string::npos);
 }
 
@@ -75,7 +75,7 @@ TEST(LocalRays, AltitudeIsTheDistanceFromTheSphere) {
   EXPECT_EQ(AltitudeOf({0.0, 0.0, 0.1}, kRadius_m).altitude_m, 0.1);
 }
 
-TEST(LocalRays, AreThoseOfTheirAngles) {
+TEST(LocalRays, FollowFromTheirAngles) {
   const ViewRay expected = atmosphere::RayFromAngles(2.0, 80.0, 90.0, 60.0);
   const ViewRay ray =
       RayFrom(AltitudeOf({.up_m = 2.0}, 6.371e6), UnitVectorOf(DirectionFromAngles(10.0, 210.0)),
@@ -86,7 +86,7 @@ TEST(LocalRays, AreThoseOfTheirAngles) {
   EXPECT_NEAR(ray.nu, expected.nu, 1e-15);
 }
 
-TEST(Sky, RadianceIsThatOfTheLayerBelow) {
+TEST(Sky, RadianceEqualsThatOfTheLayerBelow) {
   const Medium medium = atmosphere::MediumPreset("earth");
   lut::TableFolder solved;
   solved.medium = medium;
@@ -102,7 +102,7 @@ TEST(Sky, RadianceIsThatOfTheLayerBelow) {
   }
 }
 
-TEST(Sky, AerialPerspectiveHasItsStatedErrors) {
+TEST(Sky, AerialPerspectiveKeepsItsStatedErrors) {
   const Medium& medium = Earth().atmosphere().medium();
   const atmosphere::SingleScattering<float> air(medium);
   for (const Direction& sun : {Suns()[0], Suns()[1]}) {
@@ -128,7 +128,7 @@ TEST(Sky, AerialPerspectiveHasItsStatedErrors) {
   }
 }
 
-TEST(Sky, ManyRaysAreThoseOneByOne) {
+TEST(Sky, ManyRaysEqualSingleRays) {
   const auto airs = Earth().Between(kEye, Objects(), Suns()[0]);
   ASSERT_EQ(airs.size(), Objects().size());
   for (std::size_t i = 0; i < airs.size(); ++i) {
@@ -146,7 +146,7 @@ TEST(Sky, ManyRaysAreThoseOneByOne) {
   EXPECT_THROW(Earth().Between(kEye, Objects(), Suns()[0], too_few), InputError);
 }
 
-TEST(Sky, NoAirLiesBetweenAPointAndItself) {
+TEST(Sky, AirBetweenEqualPointsIsZero) {
   const AirBetween none = Earth().Between(kEye, kEye, Suns()[0]);
   for (std::size_t band = 0; band < none.transmittance.size(); ++band) {
     EXPECT_EQ(none.transmittance[band], 1.0F);
@@ -154,7 +154,7 @@ TEST(Sky, NoAirLiesBetweenAPointAndItself) {
   }
 }
 
-TEST(Sky, BelowAltitudeZeroIsThatOfAltitudeZero) {
+TEST(Sky, BelowAltitudeZeroEqualsThatAtAltitudeZero) {
   const Direction view = DirectionFromAngles(30.0, 10.0);
   const Spectrum at_zero = Earth().Radiance({.up_m = 0.0}, view, Suns()[0]);
   const Spectrum below = Earth().Radiance({.up_m = -430.0}, view, Suns()[0]);
@@ -168,7 +168,7 @@ TEST(Sky, BelowAltitudeZeroIsThatOfAltitudeZero) {
 }
 
 // Hard case 2.
-TEST(Sky, AirBelowAltitudeZeroIsTheSameFromBothEnds) {
+TEST(Sky, AirBelowAltitudeZeroIsEqualFromBothEnds) {
   const Direction sun = DirectionFromAngles(40.0, 100.0);
   for (const auto& [a, b] : {std::pair{LocalPoint{.up_m = -400.0}, LocalPoint{0.0, 10e3, -430.0}},
                              {LocalPoint{.up_m = -430.0}, LocalPoint{0.0, 10e3, -400.0}},
@@ -186,7 +186,7 @@ TEST(Sky, AirBelowAltitudeZeroIsTheSameFromBothEnds) {
   }
 }
 
-TEST(Sky, PointsAndDirectionsThatCannotBeAreRefused) {
+TEST(Sky, ImpossiblePointsAndDirectionsAreRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const Direction sun = Suns()[0];
   EXPECT_THROW((void)Earth().Radiance(kEye, {.up = 0.0}, sun), InputError);
@@ -195,7 +195,7 @@ TEST(Sky, PointsAndDirectionsThatCannotBeAreRefused) {
   EXPECT_THROW((void)Earth().Between(kEye, {.up_m = kNan}, sun), InputError);
 }
 
-TEST(Atmosphere, ColourIsThatOfTheBands) {
+TEST(Atmosphere, ColourFollowsFromTheBands) {
   const Atmosphere& earth = Earth().atmosphere();
   const Spectrum light = Earth().Radiance(kEye, {.up = 1.0}, Suns()[0]);
   std::vector<double> radiance;
@@ -210,7 +210,7 @@ TEST(Atmosphere, ColourIsThatOfTheBands) {
   EXPECT_THROW((void)earth.ColourOf(Spectrum(3)), InputError);
 }
 
-TEST(Atmosphere, ComesBackFromItsText) {
+TEST(Atmosphere, SurvivesARoundTripThroughText) {
   for (const std::string& name : Atmosphere::PresetNames()) {
     const Atmosphere preset = Atmosphere::Preset(name);
     EXPECT_EQ(preset.name(), name);

@@ -19,7 +19,7 @@ namespace {
 
 class Tables : public TemporaryFolder {};
 
-TEST_F(Tables, AreLookedUpAsByTheLayerBelow) {
+TEST_F(Tables, AreInterpolatedAsByTheLayerBelow) {
   const Atmosphere earth;
   BakeTables(earth, folder_ / "baked", BakeQuality::kPreview);
   const Sky sky = ReadTables(folder_ / "baked", earth);
@@ -37,7 +37,7 @@ TEST_F(Tables, AreLookedUpAsByTheLayerBelow) {
   EXPECT_THROW((void)ReadTables(folder_ / "baked"), InputError);
 }
 
-TEST_F(Tables, FoldersThatCannotBeReadOrMadeAreRefused) {
+TEST_F(Tables, UnusableFoldersAreRefused) {
   EXPECT_THROW((void)ReadTables(folder_ / "none"), InputError);
   EXPECT_THROW((void)DescribeTables(folder_), InputError);
   WriteText(folder_ / "file", "");
@@ -45,7 +45,7 @@ TEST_F(Tables, FoldersThatCannotBeReadOrMadeAreRefused) {
   EXPECT_THROW(ExportTables(Atmosphere(), folder_, TableUser::kThreeAtmosphere), InputError);
 }
 
-TEST_F(Tables, AreWrittenForBrunetonsDemoWhoseLowestSunTexelsTell) {
+TEST_F(Tables, ForBrunetonsDemoHaveItsLowestSun) {
   ExportTables(Atmosphere::Preset("bruneton2017"), folder_, TableUser::kBrunetonDemo);
   const lut::ExchangeDescription description = lut::DescribeExchangeTables(folder_);
   EXPECT_EQ(description.options.user, TableUser::kBrunetonDemo);
@@ -95,7 +95,7 @@ TEST_F(Tables, ExportsThatNoProgramLoadsAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
 }
 
-TEST(Panorama, IsThatOfTheLayerBelow) {
+TEST(Panorama, EqualsThatOfTheLayerBelow) {
   const Sky sky{Atmosphere()};
   PanoramaOptions options;
   options.width = 32;

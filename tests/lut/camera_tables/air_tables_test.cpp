@@ -60,7 +60,7 @@ void ExpectErrorsBelow(const SolvedAir& air, const EyeUnderLight& eye, AirQualit
 
 // Near a low sun most of the error is that of the glow, which is taken to be that of one column of
 // aerosol.
-TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
+TEST(AirTables, OnTheGroundAgreeWithTheIntegratorFromNoonToDusk) {
   ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(2.0, 60.0), AirQuality::kHigh,
                     {7e-5, 2.1e-4, 2e-5});
   ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(1500.0, 6.0), AirQuality::kHigh,
@@ -76,7 +76,7 @@ TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
 // From 2500 m, where a setting sun is seen on the horizon, low air about it is dark and high air is
 // not: tables whose aureole is elsewhere than the one that shaders put on them have a dark spot and
 // a bright.
-TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
+TEST(AirTables, HaveTheAureoleAroundTheApparentSun) {
   const EyeUnderLight eye{
       2500.0,
       {tests::EyeUnderSun(0.0, -1.3).light.seen, tests::EyeUnderSun(0.0, -1.8).light.for_air}};
@@ -106,7 +106,7 @@ TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
       << "tables of an aureole that is elsewhere have a spot";
 }
 
-TEST(AirTables, OfGreatHeightsAreThoseOfTheIntegrator) {
+TEST(AirTables, AtGreatHeightsAgreeWithTheIntegrator) {
   ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(9e3, 30.0), AirQuality::kHigh,
                     {1.6e-4, 8e-4, 3e-4});
   ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(9e3, -4.0), AirQuality::kHigh,
@@ -115,18 +115,18 @@ TEST(AirTables, OfGreatHeightsAreThoseOfTheIntegrator) {
                     {4.5e-4, 1.6e-3, 3e-4});
 }
 
-TEST(AirTables, FromAboveTheAirAreThoseOfTheIntegrator) {
+TEST(AirTables, AboveTheAirAgreeWithTheIntegrator) {
   ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(400e3, 60.0), AirQuality::kHigh,
                     {5.5e-4, 1.7e-3, 6e-4});
   ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(400e3, -2.0), AirQuality::kHigh,
                     {1.6e-3, 4.5e-3, 6e-4});
 }
 
-TEST(AirTables, OfHazeAreThoseOfTheIntegrator) {
+TEST(AirTables, OfHazeAgreeWithTheIntegrator) {
   ExpectErrorsBelow(Hazy(), tests::EyeUnderSun(300.0, 30.0), AirQuality::kHigh, {2e-4, 9e-4, 4e-5});
 }
 
-TEST(AirTables, OfLowQualityAreGoodToAPercent) {
+TEST(AirTables, OfLowQualityAreAccurateToAPercent) {
   ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(1500.0, 20.0), AirQuality::kLow,
                     {1.25e-3, 1.2e-3, 3.6e-4});
   ExpectErrorsBelow(tests::Earth(), tests::EyeUnderSun(9e3, 2.0), AirQuality::kLow,
@@ -199,7 +199,7 @@ TEST(AirTables, OfMarsAreFiniteAndNotNegative) {
   }
 }
 
-TEST(AirTables, BelowSeaLevelAreThoseOfSeaLevel) {
+TEST(AirTables, BelowSeaLevelEqualThoseAtSeaLevel) {
   const AirTables below =
       TablesOf(tests::Earth(), tests::EyeUnderSun(-100.0, 20.0), AirQuality::kFirst);
   const AirTables at = TablesOf(tests::Earth(), tests::EyeUnderSun(0.0, 20.0), AirQuality::kFirst);
@@ -207,7 +207,7 @@ TEST(AirTables, BelowSeaLevelAreThoseOfSeaLevel) {
   EXPECT_EQ(below.single.texel, at.single.texel);
 }
 
-TEST(AirTables, UnderASunInTheZenithHaveNoAzimuth) {
+TEST(AirTables, DoNotDependOnAzimuthUnderASunInTheZenith) {
   const AirTables tables =
       TablesOf(tests::Earth(), tests::EyeUnderSun(1500.0, 90.0), AirQuality::kFirst);
   for (int y = 0; y < tables.sky.height; ++y) {
@@ -217,7 +217,7 @@ TEST(AirTables, UnderASunInTheZenithHaveNoAzimuth) {
   }
 }
 
-TEST(AirTables, FarBelowTheHorizonTheSunLeavesNothingScatteredOnce) {
+TEST(AirTables, HaveNoSingleScatteringForASunFarBelowTheHorizon) {
   const AirTables tables =
       TablesOf(tests::Earth(), tests::EyeUnderSun(2.0, -18.0), AirQuality::kFirst);
   for (const glm::vec4& texel : tables.single.texel)
@@ -230,7 +230,7 @@ bool HasSingle(const AirTables& tables) {
 }
 
 // The dust of Mars is lit up to 33 km, and its forward peak is seen long after sunset.
-TEST(AirTables, OfASunThatHasSetHaveAllLightInOneTable) {
+TEST(AirTables, OfASetSunHaveAllLightInOneTable) {
   const SolvedAir mars = tests::SolvedAsClearAir(MediumPreset("mars"));
   EXPECT_TRUE(HasSingle(TablesOf(tests::Earth(), tests::EyeUnderSun(2.0, -3.1), AirQuality::kLow)));
   EXPECT_TRUE(HasSingle(TablesOf(mars, tests::EyeUnderSun(2.0, -7.0), AirQuality::kLow)));
@@ -255,7 +255,7 @@ TEST(AirTables, OfMoreThanFourWavelengthsAreRefused) {
 
 // --- the map ---
 
-TEST(AirMap, CoordinatesAndTheirInversesAgree) {
+TEST(AirMap, CoordinatesAreInvertible) {
   for (double v = 0.0; v <= 1.0; v += 0.125) {
     EXPECT_NEAR(shared::AirRow<double>(shared::AirHalfTangent<double>(v, 1.3), 1.3), v, 1e-12);
     const double azimuth = 4.0 * std::atan(shared::AirQuarterTangent<double>(v));
@@ -267,7 +267,7 @@ TEST(AirMap, CoordinatesAndTheirInversesAgree) {
   }
 }
 
-TEST(AirMap, RaysEndAtSeaLevelOrWhereTheyLeaveTheCeiling) {
+TEST(AirMap, RaysEndAtSeaLevelOrAboveAllLand) {
   const double radius = 6371.0;
   for (const double h : {0.1, 5.0, 12.0, 400.0}) {
     const double down = -0.5;

@@ -56,12 +56,12 @@ std::size_t LinesOf(const std::string& text) {
 
 using AtomicFile = TemporaryFolder;
 
-TEST(Program, StatusOfTheBodyIsTheStatusOfTheProgram) {
+TEST(Program, ReturnsTheStatusOfItsBody) {
   EXPECT_EQ(RunBody([] { return 0; }).status, 0);
   EXPECT_EQ(RunBody([] { return 2; }).status, 2);
 }
 
-TEST(Program, WarningsHaveTheNameOfTheProgram) {
+TEST(Program, WarningsBeginWithTheProgramsName) {
   const auto warning = [] {
     Warn("thick air");
     return 0;
@@ -91,7 +91,7 @@ TEST(Program, EveryKindOfFailureHasItsStatusAndOneLine) {
 }
 
 // Hard case 45.
-TEST(Program, ASignalStopsTheWorkBetweenUnitsAndSetsTheStatus) {
+TEST(Program, ASignalStopsBetweenUnitsAndSetsTheStatus) {
   for (const int signal : {SIGINT, SIGTERM}) {
     int units = 0;
     const Outcome outcome = RunBody([&] {
@@ -124,7 +124,7 @@ int StatusOfSignalled(int signal, const std::function<int()>& body) {
 }
 
 // A loop that never looks for signals, while it writes a file.
-TEST_F(AtomicFile, ASignalEndsWorkThatDoesNotLookForIt) {
+TEST_F(AtomicFile, ASignalEndsWorkThatDoesNotCheckForIt) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const int status = StatusOfSignalled(signal, [&] {
       WriteTextAtomically(folder_ / "done.txt", "whole");
@@ -139,7 +139,7 @@ TEST_F(AtomicFile, ASignalEndsWorkThatDoesNotLookForIt) {
   }
 }
 
-TEST(Program, ALostReaderOfTheResultEndsTheWorkWithoutAMessage) {
+TEST(Program, ABrokenPipeEndsTheWorkWithoutAMessage) {
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);
   std::fflush(stdout);
@@ -161,7 +161,7 @@ TEST(Program, ALostReaderOfTheResultEndsTheWorkWithoutAMessage) {
   EXPECT_EQ(lines, 0) << "at the first line that nobody reads";
 }
 
-TEST(Program, AThreadThatCannotBeStartedIsNoFaultOfTheProgram) {
+TEST(Program, AFailureToStartThreadsIsNoInternalError) {
   const Outcome outcome = RunBody([]() -> int {
     throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
   });
@@ -185,7 +185,7 @@ TEST(Program, HelpIsAsWideAsTheTerminal) {
   }
 }
 
-TEST(Program, DirectionsAreInTheHalfOpenCircleAfterRounding) {
+TEST(Program, RoundedDirectionsAreBelow360Degrees) {
   EXPECT_EQ(DirectionText(359.9998, 3), "0.000");
   EXPECT_EQ(DirectionText(359.9994, 3), "359.999");
   EXPECT_EQ(DirectionText(-1e-12, 6), "0.000000");
@@ -208,7 +208,7 @@ TEST(Program, ANegativeNumberOfThreadsIsRefused) {
 }
 
 // A user who may start no thread at all, or two. The limit does not hold for root.
-TEST(Program, FewerThreadsThanAskedForAreUsedIfThereMayBeNoMore) {
+TEST(Program, UsesFewerThreadsWhenTheSystemLimitsThem) {
   for (const rlim_t most : {1U, 3U}) {
     const pid_t child = fork();
     if (child == 0) {
@@ -227,7 +227,7 @@ TEST(Program, FewerThreadsThanAskedForAreUsedIfThereMayBeNoMore) {
   }
 }
 
-TEST(Program, ResultsThatStandardOutputDoesNotTakeAreStatus4AfterTheWork) {
+TEST(Program, UnwritableStandardOutputExitsWith4) {
   const int full = open("/dev/full", O_WRONLY);
   ASSERT_GE(full, 0);
   std::fflush(stdout);
@@ -249,7 +249,7 @@ TEST(Program, ResultsThatStandardOutputDoesNotTakeAreStatus4AfterTheWork) {
   EXPECT_EQ(RunBody([] { return 0; }).status, 0) << "the next run knows nothing of it";
 }
 
-TEST_F(AtomicFile, ContentArrivesWholeUnderLongNamesToo) {
+TEST_F(AtomicFile, LongNamesAreWritten) {
   WriteTextAtomically(folder_ / "a.txt", "one");
   WriteTextAtomically(folder_ / "a.txt", "two");
   EXPECT_EQ(ContentOf(folder_ / "a.txt"), "two");
@@ -259,7 +259,7 @@ TEST_F(AtomicFile, ContentArrivesWholeUnderLongNamesToo) {
   EXPECT_EQ(ContentOf(target), "one");
 }
 
-TEST_F(AtomicFile, TwoOutputsMayNotBeOneFileWhateverTheirNames) {
+TEST_F(AtomicFile, TwoOutputsToOneFileAreRefused) {
   fs::create_directory(folder_ / "d");
   fs::create_directory_symlink(folder_ / "d", folder_ / "link");
   fs::create_symlink("d/a.png", folder_ / "to_a.png");
@@ -278,7 +278,7 @@ TEST_F(AtomicFile, TwoOutputsMayNotBeOneFileWhateverTheirNames) {
   fs::current_path(before);
 }
 
-TEST_F(AtomicFile, OutputsGetTheirFoldersBeforeTheWork) {
+TEST_F(AtomicFile, FoldersOfOutputsAreMadeBeforeTheWork) {
   PrepareOutputs({{"--out", folder_ / "new" / "deep" / "x.exr"}}, {});
   EXPECT_TRUE(fs::is_directory(folder_ / "new" / "deep"));
   EXPECT_EQ(FileCount(), 1U) << "and no file yet";
@@ -312,7 +312,7 @@ TEST_F(AtomicFile, AFailedWriterLeavesTheOldFileAndNoTemporary) {
   EXPECT_EQ(FileCount(), 1U);
 }
 
-TEST_F(AtomicFile, OtherExceptionsPassAndLeaveNothing) {
+TEST_F(AtomicFile, OtherExceptionsPropagateAndLeaveNoFile) {
   EXPECT_THROW(
       WriteFileAtomically(folder_ / "a.txt", [](const fs::path&) { throw InputError("x"); }),
       InputError);
@@ -400,7 +400,7 @@ TEST_F(AtomicFile, AFullDiskIsAnOutputErrorAndLeavesNothing) {
 }
 
 // Hard case 47.
-TEST_F(AtomicFile, WritersOfTheSameFileDoNotDisturbEachOther) {
+TEST_F(AtomicFile, ConcurrentWritersOfOneFileBothSucceed) {
   const auto write = [&](char letter) {
     for (int i = 0; i < 50; ++i) {
       WriteTextAtomically(folder_ / "a.txt", std::string(5000, letter));
@@ -415,7 +415,7 @@ TEST_F(AtomicFile, WritersOfTheSameFileDoNotDisturbEachOther) {
 }
 
 // Hard case 45.
-TEST_F(AtomicFile, FilesOfKilledWritersAreRemovedAndOfLivingOnesNot) {
+TEST_F(AtomicFile, OnlyFilesOfKilledWritersAreRemoved) {
   tests::LeaveTemporaryOf(folder_ / "a.exr");
   ASSERT_EQ(FileCount(), 1U);
   std::size_t removed = 0, there = 0;
@@ -443,7 +443,7 @@ TEST_F(AtomicFile, TemporariesOfOtherMachinesAndOtherFilesAreKept) {
   EXPECT_EQ(FileCount(), 5U);
 }
 
-TEST_F(AtomicFile, WhetherATargetCanBeWrittenIsKnownBeforeAndChangesNothing) {
+TEST_F(AtomicFile, CheckingATargetChangesNothing) {
   WriteTextAtomically(folder_ / "a.txt", "old");
   EXPECT_NO_THROW(RequireWritable(folder_ / "a.txt"));
   EXPECT_NO_THROW(RequireWritable(folder_ / "b.txt"));
@@ -456,7 +456,7 @@ TEST_F(AtomicFile, WhetherATargetCanBeWrittenIsKnownBeforeAndChangesNothing) {
 
 using OutputName = TemporaryFolder;
 
-TEST_F(OutputName, AnInputIsRecognisedUnderEveryName) {
+TEST_F(OutputName, AnInputIsRecognisedUnderAnyName) {
   std::ofstream(folder_ / "in.csv") << "x";
   fs::create_symlink("in.csv", folder_ / "link.csv");
   fs::create_directory(folder_ / "sub");
@@ -469,7 +469,7 @@ TEST_F(OutputName, AnInputIsRecognisedUnderEveryName) {
   EXPECT_NO_THROW(RequireNoInput({"--out", folder_ / "o"}, {{"--cases", folder_ / "none"}}));
 }
 
-TEST_F(OutputName, TheExtensionSaysWhatIsWritten) {
+TEST_F(OutputName, ExtensionSelectsTheFormat) {
   EXPECT_EQ(FaultOfFileName("a/b.exr", ".exr"), "");
   EXPECT_EQ(FaultOfFileName("a/b.EXR", ".exr"), "");
   EXPECT_THAT(FaultOfFolderName("a/b.EXR"), HasSubstr("no name of a folder"));
@@ -500,7 +500,7 @@ std::string ProgressText(ProgressStyle style, std::size_t total) {
   });
 }
 
-TEST(Progress, PlainStyleIsALinePerFivePercentAndQuietIsNone) {
+TEST(Progress, PlainStyleHasALinePerFivePercentAndQuietNone) {
   const std::string text = ProgressText(ProgressStyle::kPlain, 1000);
   EXPECT_EQ(LinesOf(text), 20U);
   EXPECT_THAT(text, HasSubstr("frames: 5 % (50 of 1000)"));
@@ -509,7 +509,7 @@ TEST(Progress, PlainStyleIsALinePerFivePercentAndQuietIsNone) {
   EXPECT_EQ(ProgressText(ProgressStyle::kQuiet, 100), "");
 }
 
-TEST(Progress, JsonIsOneObjectALineUpToTheTotal) {
+TEST(Progress, JsonHasOneObjectPerLine) {
   const std::string text = ProgressText(ProgressStyle::kJson, 4);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
@@ -530,7 +530,7 @@ std::string TextOfOneUnit(ProgressStyle style) {
   });
 }
 
-TEST(Progress, ALongUnitSaysWhatIsPreparedAndHowMuchIsDone) {
+TEST(Progress, ALongUnitShowsItsStepAndFraction) {
   const std::string json = TextOfOneUnit(ProgressStyle::kJson);
   EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"step\":\"mesh\",\"elapsed_s\":"));
   EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"done\":0,\"part\":0.250,\"total\":2,"));
@@ -540,7 +540,7 @@ TEST(Progress, ALongUnitSaysWhatIsPreparedAndHowMuchIsDone) {
             "frames: preparing terrain\nframes: preparing mesh\nframes: 50 % (1 of ");
 }
 
-TEST(Progress, PartsOfUnitsNeverGoBack) {
+TEST(Progress, FractionsOfUnitsNeverDecrease) {
   const std::string text = TextOfProgress(ProgressStyle::kJson, 1, [](Progress& progress) {
     for (const double part : {0.5, 0.25, 0.75}) progress.Part(part);  // 0.25 of a thread held up
   });
@@ -561,7 +561,7 @@ TEST(Progress, AdvancesFromManyThreadsAreAllCounted) {
   EXPECT_THAT(text, HasSubstr("100 % (400 of 400)"));
 }
 
-TEST(Progress, DurationsReadAsPeopleSayThem) {
+TEST(Progress, DurationsAreShownInCommonUnits) {
   EXPECT_EQ(DurationText(0.2), "0s");
   EXPECT_EQ(DurationText(59.7), "1m00s");
   EXPECT_EQ(DurationText(200.0), "3m20s");
@@ -591,7 +591,7 @@ class GrowingFiles : public TemporaryFolder {
   }
 };
 
-TEST_F(GrowingFiles, LinesStandInThePartUntilTheFileIsFinished) {
+TEST_F(GrowingFiles, LinesAreInThePartUntilTheFileIsFinished) {
   GrowingFile file(folder_ / "a.csv");
   file.Append("one\n");
   EXPECT_EQ(ContentOf(folder_ / "a.csv.part"), "one\n") << "at once";
@@ -605,7 +605,7 @@ TEST_F(GrowingFiles, LinesStandInThePartUntilTheFileIsFinished) {
   EXPECT_EQ(FileCount(), 1U) << "without a line there is no file";
 }
 
-TEST_F(GrowingFiles, AKilledWriterLeavesEveryLineAndTheNextOneKeepsThem) {
+TEST_F(GrowingFiles, AKilledWriterLeavesEveryLine) {
   const int status = InProcess([&] {
     GrowingFile file(folder_ / "a.csv");
     file.Append("one\ntwo\n");
@@ -622,7 +622,7 @@ TEST_F(GrowingFiles, AKilledWriterLeavesEveryLineAndTheNextOneKeepsThem) {
   EXPECT_EQ(ContentOf(folder_ / "a.csv"), "three\n");
 }
 
-TEST_F(GrowingFiles, TwoProcessesDoNotWriteOne) {
+TEST_F(GrowingFiles, TwoProcessesCannotWriteOneFile) {
   GrowingFile file(folder_ / "a.csv");
   file.Append("one\n");
   EXPECT_EQ(InProcess([&] { const GrowingFile second(folder_ / "a.csv"); }), 1 << 8)
@@ -630,7 +630,7 @@ TEST_F(GrowingFiles, TwoProcessesDoNotWriteOne) {
   EXPECT_EQ(ContentOf(folder_ / "a.csv.part"), "one\n");
 }
 
-TEST_F(GrowingFiles, ADiskThatIsFullLeavesWholeLines) {
+TEST_F(GrowingFiles, AFullDiskLeavesCompleteLines) {
   const int status = InProcess([&] {
     const rlimit limit{10, 10};  // bytes of a file
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -643,7 +643,7 @@ TEST_F(GrowingFiles, ADiskThatIsFullLeavesWholeLines) {
   EXPECT_EQ(ContentOf(folder_ / "a.csv.part"), "seven..\n");
 }
 
-TEST_F(GrowingFiles, AFolderThatIsNotThereIsNamed) {
+TEST_F(GrowingFiles, AMissingFolderIsNamed) {
   const fs::path target = folder_ / "none" / "a.csv";
   EXPECT_THAT(tests::FaultOf<OutputError>([&] { GrowingFile{target}; }), HasSubstr("none/a.csv"));
 }

@@ -153,7 +153,7 @@ class StoredEval : public Eval {
 
 constexpr IntegralOptions WithMaxError(double error) { return {.samples = 16, .max_error = error}; }
 
-TEST_F(StoredEval, TransmittanceAndOpticalDepthAreWithinTheirEstimates) {
+TEST_F(StoredEval, TransmittanceAndOpticalDepthKeepTheirErrors) {
   for (const char* quantity : {"transmittance", "optical_depth"}) {
     const char* column = quantity[0] == 't' ? "transmittance" : "tau";
     const Comparison fast = Compare("transmittance", quantity, column, {}, stored::All);
@@ -168,7 +168,7 @@ TEST_F(StoredEval, TransmittanceAndOpticalDepthAreWithinTheirEstimates) {
   }
 }
 
-TEST_F(StoredEval, SingleScatteringIsWithinItsEstimate) {
+TEST_F(StoredEval, SingleScatteringKeepsItsErrors) {
   const Comparison standard = Compare("single", "single", "total", {}, stored::All);
   EXPECT_GE(standard.compared, 450);
   EXPECT_LT(standard.worst, 1e-4) << standard.worst_id;
@@ -183,7 +183,7 @@ TEST_F(StoredEval, SingleScatteringIsWithinItsEstimate) {
   EXPECT_LT(air.worst, 1e-4) << air.worst_id;
 }
 
-TEST_F(StoredEval, WantedErrorIsKept) {
+TEST_F(StoredEval, RequestedErrorIsKept) {
   for (const double wanted : {1e-2, 1e-4, 1e-5}) {
     const Comparison comparison =
         Compare("single", "single", "total", WithMaxError(wanted), stored::All);
@@ -197,7 +197,7 @@ TEST_F(StoredEval, WantedErrorIsKept) {
   EXPECT_LT(reference.worst, 1e-7) << reference.worst_id;
 }
 
-TEST_F(StoredEval, ErrorsOfAllOrdersAreTrueInEveryKindOfStoredAir) {
+TEST_F(StoredEval, ErrorsOfAllOrdersAreTrueInAllStoredAir) {
   const Comparison total = Compare("multiple", "total", "total", {}, [](const stored::Row& row) {
     return !tests::kSanitized || row.at("set") == "earth" || row.at("set") == "small";
   });
@@ -303,7 +303,7 @@ TEST_F(Eval, ErrorsOfAllOrdersAreTrueInHazeDustAndThickAir) {
 
 // The radiances are those of skylut eval --method path-trace --max-error 0.7%, along the horizon and
 // 5 degrees above it.
-TEST_F(Eval, DustAtTheHorizonIsWithinItsEstimateOfPaths) {
+TEST_F(Eval, DustAtTheHorizonAgreesWithPathsWithinItsError) {
   const auto evaluator = MakeIntegralEvaluator(MediumPreset("mars", {445.0}));
   const Case prepared{"", 0, Quantity::kTotal, {}};
   evaluator->Prepare({&prepared, 1});
@@ -428,7 +428,7 @@ std::vector<NarrowLobe> NarrowLobesOfPaths() {
 }
 
 // Two standard errors of the paths are added to the estimates and to the bounds of the sky.
-TEST_F(Eval, LightOfNarrowLobesAndItsErrorsAreThoseOfPaths) {
+TEST_F(Eval, LightAndErrorsOfNarrowLobesAgreeWithPaths) {
   Comparison all;
   const std::vector<NarrowLobe> lobes = NarrowLobesOfPaths();
   for (std::size_t i = 0; i < lobes.size(); i += tests::ScaledDown<std::size_t>(1, 4)) {
@@ -456,7 +456,7 @@ TEST_F(Eval, LightOfNarrowLobesAndItsErrorsAreThoseOfPaths) {
 // of optical depths 0.05, 0.15 and 0.5 in the three bands; the views are near the sun, beside it
 // and opposite it, from the ground and from 3 km, three of them along segments, and there are
 // irradiances of the sky. Two standard errors of the paths are added to the estimates.
-TEST_F(Eval, LightOfLobesUnderManySunsAndItsErrorsAreThoseOfPaths) {
+TEST_F(Eval, LightOfLobesUnderManySunsAgreesWithPaths) {
   const std::string folder = "narrow_lobes/";
   const std::string cases = ContentOf(stored::DataFile(folder + "cases.csv"));
   // The bounds are those of lut/ACCURACY.md; the largest error is that of 3 km of mist opposite a
@@ -496,7 +496,7 @@ TEST_F(Eval, LightOfLobesUnderManySunsAndItsErrorsAreThoseOfPaths) {
 // the light of this sky. Paths find 5.4e-14 in the thin air, with a standard error of 5e-15 (skylut
 // eval
 // --method path-trace --max-error 10%), and 5e-13 on the largest planet.
-TEST_F(Eval, LightThatIsNotResolvedHasAnError) {
+TEST_F(Eval, UnresolvedLightHasAnError) {
   const std::string green =
       "preset = \"bruneton2017\"\n[spectrum]\nwavelengths_nm = [550]\nsolar_irradiance = [1.85]\n"
       "[planet]\nground_albedo = 0.1\n";
@@ -523,7 +523,7 @@ TEST_F(Eval, LightThatIsNotResolvedHasAnError) {
   }
 }
 
-TEST_F(Eval, NoLightPassesThickAirAndItsErrorIsFinite) {
+TEST_F(Eval, ThickAirTransmitsNothingWithAFiniteError) {
   Medium medium = MediumPreset("bruneton2017");
   medium.mie_extinction_per_m.assign(medium.wavelengths_nm.size(), 1000.0);
   const auto evaluator = MakeIntegralEvaluator(medium);
@@ -555,7 +555,7 @@ class FaultyEvaluator final : public Evaluator {
   double value_;
 };
 
-TEST_F(Eval, ResultsThatAreNotFiniteAreNotWritten) {
+TEST_F(Eval, NonFiniteResultsAreNotWritten) {
   WriteText(cases_, std::string(kHeader) + "a,total,0,60,0,30,\n");
   for (const double value : {std::nan(""), HUGE_VAL}) {
     FaultyEvaluator evaluator(value);
@@ -566,7 +566,7 @@ TEST_F(Eval, ResultsThatAreNotFiniteAreNotWritten) {
   }
 }
 
-TEST_F(Eval, ACaseThatIsRefusedWhileEvaluatedIsNamedByItsLine) {
+TEST_F(Eval, CasesRefusedDuringEvaluationAreNamedByLine) {
   WriteText(cases_, std::string(kHeader) + "a,total,0,60,0,30,\nrefused,total,0,60,0,30,\n");
   FaultyEvaluator evaluator(1.0);
   EXPECT_EQ(
@@ -642,7 +642,7 @@ struct StoredKind {
   double rms;
 };
 
-TEST_F(StoredEval, TablesAgreeWithEveryKindOfCaseAndKnowHowFarTheyAre) {
+TEST_F(StoredEval, TablesAgreeWithEveryKindOfCaseWithinTheirErrors) {
   constexpr StoredKind kKinds[] = {
       {"transmittance", "transmittance", "transmittance", "", 5e-3},  // to optical depths of 20
       {"single", "single", "total", "day", 5e-4},
@@ -664,7 +664,7 @@ TEST_F(StoredEval, TablesAgreeWithEveryKindOfCaseAndKnowHowFarTheyAre) {
   }
 }
 
-TEST_F(StoredEval, MomentsAndIntegratedRaysAgreeWithPathsInTwilightToo) {
+TEST_F(StoredEval, MomentsAndRaysAgreeWithPathsInTwilight) {
   constexpr StoredKind kKinds[] = {{"single", "single", "total", "twilight", 1e-3},
                                    {"multiple", "total", "total", "day", 1e-3},
                                    {"multiple", "total", "total", "twilight", 3e-3}};
@@ -681,7 +681,7 @@ TEST_F(StoredEval, MomentsAndIntegratedRaysAgreeWithPathsInTwilightToo) {
   }
 }
 
-TEST_F(Eval, StokesParametersAreThoseOfThePathsOnBothSidesOfTheSun) {
+TEST_F(Eval, StokesParametersAgreeWithPathsOnBothSidesOfTheSun) {
   const Medium medium = InPolarisedLight(MediumPreset("bruneton2017"), "bruneton2017");
   const auto integral = MakeIntegralEvaluator(medium);
   const auto paths = MakePathTraceEvaluator(medium, {.max_error = 0.005, .max_paths = 1U << 13U});
@@ -711,7 +711,7 @@ TEST_F(Eval, StokesParametersAreThoseOfThePathsOnBothSidesOfTheSun) {
   }
 }
 
-TEST_F(Eval, IrradianceOfTheSunIsItsHeightTimesTheTransmittance) {
+TEST_F(Eval, IrradianceOfTheSunIsCosineTimesTransmittance) {
   Evaluator& evaluator = Integral();
   const Results results = Evaluate(std::string(kHeader) +
                                        "E,irradiance_sun,0,0,0,60,\n"
@@ -722,7 +722,7 @@ TEST_F(Eval, IrradianceOfTheSunIsItsHeightTimesTheTransmittance) {
   EXPECT_EQ(results.at({"N", 550.0}).value, 0.0) << "the sun is below the plane";
 }
 
-TEST_F(Eval, EdgesOfTheDefinitionsAreKept) {
+TEST_F(Eval, LimitingCasesFollowTheDefinitions) {
   Evaluator& evaluator = Integral();
   const Results results = Evaluate(std::string(kHeader) +
                                        "along,single,0,90,0,45,\n"
@@ -752,7 +752,7 @@ TableFolder SmallTables(const Medium& medium) {
 
 constexpr MultipleScatteringOptions kSmallLight{.altitudes = 12, .sun_angles = 24, .degree = 2};
 
-TEST_F(Eval, ADistanceToTheGroundOrBeyondLeavesItsLightOut) {
+TEST_F(Eval, GivenDistancesExcludeLightFromTheGround) {
   const Medium medium = MediumPreset("bruneton2017");
   constexpr std::array<const char*, 3> kQuantities{"single", "inscatter_single", "total"};
   const auto expect = [&](Evaluator& evaluator, double tolerance,
@@ -792,7 +792,7 @@ TEST_F(Eval, ADistanceToTheGroundOrBeyondLeavesItsLightOut) {
   expect(*paths, 4.0 * kError * std::sqrt(2.0), kQuantities);
 }
 
-TEST_F(Eval, TablesSayHowFarTheyAreFromTheIntegral) {
+TEST_F(Eval, TablesReportTheirErrorAgainstTheIntegral) {
   const Medium medium = MediumPreset("bruneton2017");
   TableFolder folder = SmallTables(medium);
   folder.multiple_scattering.emplace(medium, kSmallLight);
@@ -815,7 +815,7 @@ TEST_F(Eval, TablesSayHowFarTheyAreFromTheIntegral) {
   }
 }
 
-TEST_F(Eval, WhatTablesDoNotHoldIsRefusedWithItsLine) {
+TEST_F(Eval, QuantitiesWithoutATableAreRefusedWithTheirLine) {
   const Medium medium = MediumPreset("bruneton2017");
   const auto tables = MakeTableEvaluator(SmallTables(medium));
   WriteText(cases_, std::string(kHeader) + "a,single,0,10,0,10,\nb,total,0,10,0,10,\n");
@@ -827,7 +827,7 @@ TEST_F(Eval, WhatTablesDoNotHoldIsRefusedWithItsLine) {
   EXPECT_THROW(static_cast<void>(MakeTableEvaluator(std::move(mixed))), InputError);
 }
 
-TEST_F(Eval, WhatAFolderLeavesOutIsIntegrated) {
+TEST_F(Eval, QuantitiesMissingInAFolderAreIntegrated) {
   const Medium medium = MediumPreset("bruneton2017");
   const auto tables = MakeTableEvaluator({.medium = medium,
                                           .transmittance = {},
@@ -847,7 +847,7 @@ TEST_F(Eval, WhatAFolderLeavesOutIsIntegrated) {
   }
 }
 
-TEST_F(Eval, ColumnsComeInAnyOrderAndLinesEndAsTheyLike) {
+TEST_F(Eval, ColumnOrderAndLineEndsAreFree) {
   Evaluator& evaluator = Integral();
   const Results results = Evaluate(
       "\xEF\xBB\xBF"
@@ -860,7 +860,7 @@ TEST_F(Eval, ColumnsComeInAnyOrderAndLinesEndAsTheyLike) {
 }
 
 // Hard case 43.
-TEST_F(Eval, OrderOfResultsIsThatOfCasesForAnyNumberOfThreads) {
+TEST_F(Eval, ResultsAreInOrderForAnyNumberOfThreads) {
   std::string text = kHeader;
   for (int i = 0; i < 9000; ++i) {
     text += fmt::format("{},transmittance,{},{},0,30,\n", i, i % 1000, i % 90);
@@ -935,7 +935,7 @@ TEST(IntegralEvaluator, OptionsOutOfRangeAreRefused) {
     EXPECT_FALSE(RelativeErrorFromText(text).has_value()) << text;
 }
 
-TEST_F(Eval, PathsGiveScatteredLightWithOneStandardErrorAndNothingElse) {
+TEST_F(Eval, PathsEvaluateOnlyScatteredLight) {
   const Medium medium = MediumPreset("bruneton2017");
   constexpr double kError = tests::ScaledDown(0.005, 0.02);
   const auto paths = MakePathTraceEvaluator(medium, {.max_error = kError});
@@ -1018,13 +1018,13 @@ void ExpectStored(const std::map<std::string, Estimate>& found, double tolerance
   }
 }
 
-TEST_F(LampCases, StoredCasesAreAsNearAsIsAskedFor) {
+TEST_F(LampCases, StoredCasesKeepTheRequestedError) {
   ExpectStored(Evaluate(StoredAsCases(), {}), 1e-3);
   for (const double error : {1e-4, 1e-8})
     ExpectStored(Evaluate(StoredAsCases(), {.max_error = error}), error);
 }
 
-TEST_F(LampCases, AFileOfLampsIsKnownByItsHeader) {
+TEST_F(LampCases, AFileOfLampsIsRecognisedByItsHeader) {
   WriteText(folder_ / "lamps.csv", kLampHeader);
   WriteText(folder_ / "sky.csv", "id,quantity,altitude_m\n");
   EXPECT_TRUE(HoldsLampCases(folder_ / "lamps.csv"));
@@ -1032,7 +1032,7 @@ TEST_F(LampCases, AFileOfLampsIsKnownByItsHeader) {
   EXPECT_FALSE(HoldsLampCases(folder_ / "none.csv"));
 }
 
-TEST_F(LampCases, BadCasesAreRefusedByLineAndName) {
+TEST_F(LampCases, BadCasesAreRefusedWithLineAndName) {
   const std::pair<const char*, const char*> lines[] = {
       {"a,airlight,0.01,0.02,cornette-shanks,0.5,,10,1,iso,,,,,,\n", "no fault"},
       {"a,single,0.01,0.02,cornette-shanks,0.5,,10,1,iso,,,,,,\n",

@@ -29,7 +29,7 @@ void FillRows(HdrImage& image, int begin, int end, float luminance) {
   }
 }
 
-TEST(Exposure, Sunny16) {
+TEST(Exposure, AgreesWithTheSunny16Rule) {
   // f/16 at 1/100 s, ISO 100: EV 14.6; a grey card in full sun has 4096 cd/m^2 at EV 15.
   EXPECT_NEAR(Metered(Uniform(4096.0F)), 15.0, 0.04)
       << "log2(4096 * 100 / 12.5) = 15; the histogram has 16 bins a stop";
@@ -45,7 +45,7 @@ TEST(Exposure, SaturationIs1Point2TimesTwoToTheEv) {
   EXPECT_DOUBLE_EQ(ExposureScale(15.0) * 1.2 * 32768.0, 1.0);
 }
 
-TEST(Exposure, TheSunsDiskDoesNotCount) {
+TEST(Exposure, IgnoresTheDiskOfTheSun) {
   HdrImage image = Uniform(1000.0F);
   const double without = Metered(image);
   for (int y = 0; y < 10; ++y) {
@@ -71,7 +71,7 @@ HdrImage GroundUnder(float sky_cd_per_m2, int rows_of_ground) {
   return image;
 }
 
-TEST(Exposure, SpaceDoesNotCountThoughSomeAirIsLeftInIt) {
+TEST(Exposure, IgnoresSpaceAboveThinAir) {
   // From 100 km up the sky at noon has 0.003 to 0.1 cd/m^2, the ground 6000.
   const double ground = Metered(Uniform(6000.0F));
   for (const float sky : {0.003F, 0.1F}) {
@@ -79,7 +79,7 @@ TEST(Exposure, SpaceDoesNotCountThoughSomeAirIsLeftInIt) {
   }
 }
 
-TEST(Exposure, SunlitGroundBelowABlackSkyIsMeteredAtAllHeights) {
+TEST(Exposure, MetersSunlitGroundBelowABlackSkyAtAllHeights) {
   // From 25 km up the sky at noon is 6 stops darker than the ground, from 40 km 8. Between shares
   // of 40 and 95 % 15 of 55 are sky until it counts less.
   const double ground = Metered(Uniform(6000.0F));
@@ -91,7 +91,7 @@ TEST(Exposure, SunlitGroundBelowABlackSkyIsMeteredAtAllHeights) {
   EXPECT_NEAR(Metered(GroundUnder(from_40_km, 20)), ground, 0.5);
 }
 
-TEST(Exposure, ShadeOnTheGroundCounts) {
+TEST(Exposure, IncludesShadedGround) {
   const double even = Metered(Uniform(6000.0F));
   // 70 % of the picture 3 stops darker: between shares of 40 and 95 % that is 30 of 55.
   const double shaded = Metered(GroundUnder(6000.0F / 8.0F, 12));
@@ -99,7 +99,7 @@ TEST(Exposure, ShadeOnTheGroundCounts) {
       << "bins of a 16th of a stop";
 }
 
-TEST(Exposure, LandThatGrowsDarkFasterThanTheSkyDoesNotOpenThePicture) {
+TEST(Exposure, LandDarkeningFasterThanTheSkyDoesNotRaiseIt) {
   // The sun falls from -14.5 to -18 degrees: half of the picture loses 2 stops, the sky a third.
   const auto sky_shown = [](float sky, float land) {
     HdrImage image = Uniform(sky);
@@ -110,13 +110,13 @@ TEST(Exposure, LandThatGrowsDarkFasterThanTheSkyDoesNotOpenThePicture) {
   EXPECT_LT(after - before, 0.12) << "land is a tenth of what is weighed, and a tenth as bright";
 }
 
-TEST(Exposure, WhatTheSunLightsIsNoBrighterThanPaperBesideAGreyCard) {
+TEST(Exposure, SunlitGroundIsAtMostAsBrightAsPaper) {
   const double even = Metered(Uniform(6000.0F));
   // A tenth of the picture in the sun, the rest 5 stops darker: the mean alone would be 4.5 lower.
   EXPECT_NEAR(Metered(GroundUnder(6000.0F / 32.0F, 4)), even - std::log2(0.90 / 0.18), 1.0 / 16.0);
 }
 
-TEST(Exposure, LampsDoNotCount) {
+TEST(Exposure, IgnoresLamps) {
   for (const float dusk : {300.0F, 3.0F, 0.03F}) {
     const double without = Metered(Uniform(dusk));
     HdrImage lamps = Uniform(dusk);
@@ -126,7 +126,7 @@ TEST(Exposure, LampsDoNotCount) {
   }
 }
 
-TEST(Exposure, ASkyThatTurnsBlackMovesTheMeterWithoutAJump) {
+TEST(Exposure, IsContinuousWhileTheSkyTurnsBlack) {
   double before = Metered(GroundUnder(100.0F, 18));
   for (double stops = 0.0; stops < 14.0; stops += 0.0625) {
     const auto sky = static_cast<float>(100.0 * std::exp2(-stops));
@@ -138,7 +138,7 @@ TEST(Exposure, ASkyThatTurnsBlackMovesTheMeterWithoutAJump) {
 }
 
 // All pixels of a row of sky are as bright: they enter a class of the meter together.
-TEST(Exposure, LightThatFadesEvenlyIsFollowedEvenly) {
+TEST(Exposure, FollowsFadingLightEvenly) {
   constexpr double kStep_ev = 0.13;  // of a minute of dusk
   HdrImage dusk(48, 27);
   for (int y = 0; y < dusk.height; ++y)
@@ -153,7 +153,7 @@ TEST(Exposure, LightThatFadesEvenlyIsFollowedEvenly) {
   }
 }
 
-TEST(Exposure, RowsOfAPanoramaCountAsTheirSolidAngle) {
+TEST(Exposure, WeighsRowsOfAPanoramaBySolidAngle) {
   // Beyond 30 degrees of latitude lies half of the sphere, on two thirds of the rows.
   HdrImage panorama(8, 96), half(8, 96);
   FillRows(panorama, 0, 96, 100.0F);
@@ -167,7 +167,7 @@ TEST(Exposure, RowsOfAPanoramaCountAsTheirSolidAngle) {
       << "as a picture of a camera two thirds are dark";
 }
 
-TEST(Exposure, FromNightToDayTheMeterFollowsTheLight) {
+TEST(Exposure, FollowsTheLightFromNightToDay) {
   // A tenth is 8 stops brighter than the rest.
   double before = 0.0;
   for (double stop = -6.0; stop < 16.0; stop += 1.0 / 16.0) {
@@ -182,7 +182,7 @@ TEST(Exposure, FromNightToDayTheMeterFollowsTheLight) {
   }
 }
 
-TEST(Exposure, TheRuleOfTheMeterIsSaidInWords) {
+TEST(Exposure, RuleIsDescribedInWords) {
   EXPECT_NE(MeterRule().find("0.4 to 0.95 of the solid angle"), std::string::npos) << MeterRule();
   EXPECT_NE(MeterRule().find("over 1e+06 cd/m^2"), std::string::npos) << MeterRule();
 }
@@ -246,7 +246,7 @@ TEST(LocalExposure, KeepsTheContrastOfDetail) {
   }
 }
 
-TEST(LocalExposure, DrawsNoHaloAlongAnEdge) {
+TEST(LocalExposure, HasNoHaloAlongEdges) {
   const HdrImage exposed = LocallyExposed(SkyOverValley(), 11.0);
   for (int y = 0; y < kSide; ++y) {
     const int far = y < kSide / 2 ? 10 : kSide - 11;
@@ -256,7 +256,7 @@ TEST(LocalExposure, DrawsNoHaloAlongAnEdge) {
   }
 }
 
-TEST(LocalExposure, KeepsHueAndLeavesSmallRangesAlone) {
+TEST(LocalExposure, KeepsHueAndSmallRanges) {
   const HdrImage exposed = LocallyExposed(SkyOverValley(), 11.0);
   const auto& rgb = exposed.at(30, 90);
   EXPECT_NEAR(rgb[0] / rgb[1], 1.2F, 1e-5F);
@@ -267,7 +267,7 @@ TEST(LocalExposure, KeepsHueAndLeavesSmallRangesAlone) {
   EXPECT_EQ(LocallyExposed(flat, 3.0).rgb, flat.rgb) << "already within five stops";
 }
 
-TEST(LocalExposure, MiddleGreyStaysWhereTheExposureHasIt) {
+TEST(LocalExposure, KeepsMiddleGrey) {
   HdrImage image(kSide, kSide);
   const auto grey = static_cast<float>(std::exp2(9.0) * kMeterConstant / 100.0);
   for (int y = 0; y < kSide; ++y) {
@@ -279,7 +279,7 @@ TEST(LocalExposure, MiddleGreyStaysWhereTheExposureHasIt) {
   EXPECT_NEAR(LuminanceAt(LocallyExposed(image, 9.0), 64, 64) / grey, 1.0F, 0.02F);
 }
 
-TEST(LocalExposure, DarknessStaysDarkAndFinite) {
+TEST(LocalExposure, KeepsDarknessDarkAndFinite) {
   HdrImage image(32, 32);
   EXPECT_EQ(LocallyExposed(image, 0.0).rgb, image.rgb);
   image.at(3, 3) = {1e5F, 1e5F, 1e5F};

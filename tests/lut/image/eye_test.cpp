@@ -37,7 +37,7 @@ TEST(NightVision, IsPhotopicByDayAndScotopicInTheDark) {
   EXPECT_EQ(MesopicLightOf(0.0, 0.0).luminance_cd_per_m2, 0.0);
 }
 
-TEST(NightVision, SolvesTheEquationsWhichHaveOneSolution) {
+TEST(NightVision, SolvesItsEquationsUniquely) {
   for (const double ratio : {0.25, 0.5, 1.0, 2.5, 5.0}) {
     for (double stop = -12.0; stop < 4.0; stop += 0.25) {
       const double photopic = std::exp2(stop);
@@ -65,7 +65,7 @@ TEST(NightVision, SolvesTheEquationsWhichHaveOneSolution) {
   }
 }
 
-TEST(NightVision, LuminanceNeverJumpsFromDuskToNight) {
+TEST(NightVision, LuminanceIsContinuousFromDuskToNight) {
   double before = 0.0;
   for (double stop = -14.0; stop < 6.0; stop += 0.01) {
     const double photopic = std::exp2(stop);
@@ -85,13 +85,13 @@ HdrImage Uniform(std::array<float, 3> rgb, float scotopic) {
   return image;
 }
 
-TEST(NightVision, LeavesDaylightAloneAndNeedsTheLightThatRodsSee) {
+TEST(NightVision, KeepsDaylightAndNeedsScotopicLight) {
   const HdrImage day = Uniform({30.0F, 10.0F, 5.0F}, 20.0F);
   EXPECT_EQ(SeenByNight(day).rgb, day.rgb);
   EXPECT_THROW((void)SeenByNight(HdrImage(2, 2)), InputError);
 }
 
-TEST(NightVision, TakesColourAwayAndTurnsTheRestBlue) {
+TEST(NightVision, RemovesColourAndShiftsTheRestToBlue) {
   // Rods hardly see a red wall of 1e-3 cd/m^2.
   const HdrImage wall = SeenByNight(Uniform({4e-3F, 2e-4F, 1e-4F}, 2e-4F));
   const auto& rgb = wall.at(0, 0);
@@ -105,7 +105,7 @@ TEST(NightVision, TakesColourAwayAndTurnsTheRestBlue) {
   EXPECT_LT(dusk[0] / dusk[2], 40.0F) << "less red than by day";
 }
 
-TEST(NightVision, IsNeverBrighterThanWhatConesWouldSee) {
+TEST(NightVision, IsNeverBrighterThanPhotopicVision) {
   for (double stop = -14.0; stop < 4.0; stop += 0.25) {
     const auto light = static_cast<float>(std::exp2(stop));
     const auto rgb =
@@ -116,7 +116,7 @@ TEST(NightVision, IsNeverBrighterThanWhatConesWouldSee) {
   }
 }
 
-TEST(EyeAdaptation, FollowsMoreLightAndDuskWithoutALag) {
+TEST(EyeAdaptation, FollowsBrighteningAndDuskWithoutALag) {
   EyeAdaptation eye;
   EXPECT_EQ(eye.Follow(-5.0, 0.0), -5.0);
   EXPECT_EQ(eye.Follow(15.0, 1.0), 15.0);
@@ -125,7 +125,7 @@ TEST(EyeAdaptation, FollowsMoreLightAndDuskWithoutALag) {
 }
 
 // Light falls from daylight to that of a total eclipse within a minute.
-TEST(EyeAdaptation, LagsBehindFallingLightButNotAfterAGlanceIntoShade) {
+TEST(EyeAdaptation, LagsBehindFadingLightButNotAfterBriefShade) {
   EyeAdaptation eye;
   (void)eye.Follow(13.0, 0.0);
   EXPECT_DOUBLE_EQ(eye.Follow(3.0, 60.0), 13.0 - 0.8 - 4.0);
@@ -166,7 +166,7 @@ double ContrastOf(const HdrImage& image) {
   return static_cast<double>((high - low) / (high + low));
 }
 
-TEST(Acuity, FallsFromDayToNightAsShlaerMeasured) {
+TEST(Acuity, FallsFromDayToNightAsMeasuredByShlaer) {
   // Shlaer (1937), read from the fit of Ward Larson et al.: 50 by day, 8 by moon, 2 by stars.
   EXPECT_NEAR(AcuityAt(1e3), 49.2, 0.5);
   EXPECT_NEAR(AcuityAt(1.0), 31.5, 0.5);
@@ -177,14 +177,14 @@ TEST(Acuity, FallsFromDayToNightAsShlaerMeasured) {
     EXPECT_LE(AcuityAt(std::exp2(stop)), AcuityAt(std::exp2(stop + 0.25)));
 }
 
-TEST(Acuity, DayIsAsSharpAsItWas) {
+TEST(Acuity, KeepsSharpnessByDay) {
   const HdrImage bars = Grating(50.0, 6.0);
   HdrImage day = bars;
   for (auto& rgb : day.rgb) rgb.fill(rgb[0] + 5.0F);
   EXPECT_EQ(WithAcuityOfNight(day, kPixel_rad).rgb, day.rgb);
 }
 
-TEST(Acuity, InTheDarkFineGratingsFadeAndCoarseOnesDoNot) {
+TEST(Acuity, FineGratingsFadeInTheDark) {
   for (const double mean : {1e-2, 1e-3, 1e-4}) {
     const double finest_px = 1.0 / (AcuityAt(mean) * kPixel_rad / kRadiansPerDegree);
     const auto left = [&](double period_px) {
@@ -201,7 +201,7 @@ TEST(Acuity, InTheDarkFineGratingsFadeAndCoarseOnesDoNot) {
   }
 }
 
-TEST(Acuity, NothingIsLostAndNothingGrowsBrighter) {
+TEST(Acuity, ConservesLightAndAddsNoBrightness) {
   for (const double mean : {1.0, 1e-2, 1e-5}) {
     const HdrImage bars = Grating(mean, 17.0);
     EXPECT_NEAR(MeanOf(WithAcuityOfNight(bars, kPixel_rad)), MeanOf(bars), 1e-5 * mean)
@@ -209,7 +209,7 @@ TEST(Acuity, NothingIsLostAndNothingGrowsBrighter) {
   }
 }
 
-TEST(Acuity, ALampStaysAPointInTheDark) {
+TEST(Acuity, KeepsLampsAsPointsInTheDark) {
   HdrImage image(61, 41);
   for (auto& rgb : image.rgb) rgb.fill(1e-4F);
   image.at(30, 20).fill(500.0F);
@@ -219,7 +219,7 @@ TEST(Acuity, ALampStaysAPointInTheDark) {
       << "its neighbour has none of its light, and one of 200 around that lend it theirs less";
 }
 
-TEST(Acuity, PicturesOfOnePixelOrOneRowAreSeen) {
+TEST(Acuity, WorksForOnePixelAndOneRow) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{300, 1}, std::pair{1, 300}}) {
     HdrImage image(width, height);
     for (auto& rgb : image.rgb) rgb.fill(1e-3F);
@@ -228,7 +228,7 @@ TEST(Acuity, PicturesOfOnePixelOrOneRowAreSeen) {
   }
 }
 
-TEST(Glare, SpreadsAllLightOverTheHemisphere) {
+TEST(Glare, ConservesLight) {
   double sum = 0.0;
   // Steps are even in the logarithm, from a thousandth of the core's width.
   constexpr double kStep = 0.001;
@@ -272,7 +272,7 @@ TEST(Glare, IsTheSumOverAllPixels) {
   }
 }
 
-TEST(Glare, OfASunOnABlackSkyFallsAsTheSquareOfTheAngleFarFromIt) {
+TEST(Glare, FallsWithTheSquareOfTheAngleFarFromTheSun) {
   HdrImage image(200, 3);
   image.at(0, 1) = {1e9F, 1e9F, 1e9F};
   const HdrImage seen = WithGlareOfEye(image, 0.2 * kRadiansPerDegree);
@@ -281,7 +281,7 @@ TEST(Glare, OfASunOnABlackSkyFallsAsTheSquareOfTheAngleFarFromIt) {
   EXPECT_NEAR(near / far, 4.0, 0.2) << "from 16 to 32 degrees";
 }
 
-TEST(Glare, LeavesDarknessDark) {
+TEST(Glare, KeepsDarkness) {
   const HdrImage seen = WithGlareOfEye(HdrImage(17, 5), kPixel_rad);
   for (const auto& pixel : seen.rgb) EXPECT_EQ(pixel[1], 0.0F);
 }

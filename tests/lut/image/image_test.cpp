@@ -58,7 +58,7 @@ DisplayImage TestDisplayImage() {
 using ExrFile = TemporaryFolder;
 using PngFile = TemporaryFolder;
 
-TEST_F(ExrFile, ReturnsEveryBitOfPixelsLayersAndMetadata) {
+TEST_F(ExrFile, KeepsEveryBitOfPixelsLayersAndMetadata) {
   const HdrImage image = TestImage();
   const fs::path file = folder_ / "a.exr";
   WriteExr(file, image, kMetadata);
@@ -73,7 +73,7 @@ TEST_F(ExrFile, ReturnsEveryBitOfPixelsLayersAndMetadata) {
   EXPECT_EQ(FileCount(), 1U) << "no temporary is left";
 }
 
-TEST_F(ExrFile, APictureWithAValueThatIsNotFiniteIsNotWritten) {
+TEST_F(ExrFile, NonFinitePixelsAreNotWritten) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
   const auto fault_of = [&](const auto& change) {
@@ -157,7 +157,7 @@ TEST(HdrImage, SizesOutOfRangeAreRefused) {
   EXPECT_THROW(HdrImage(40000, 1), InputError);
 }
 
-TEST_F(PngFile, ReturnsEveryByteAndTheMetadata) {
+TEST_F(PngFile, KeepsEveryByteAndTheMetadata) {
   const DisplayImage image = TestDisplayImage();
   const fs::path file = folder_ / "a.png";
   WritePng(file, image, kMetadata);
@@ -201,7 +201,7 @@ TEST(Develop, LinearCurveReproducesTheSrgbCodeOnAverage) {
 }
 
 // Hard case 35.
-TEST(Develop, ASlowGradientHasNoBands) {
+TEST(Develop, SlowGradientsHaveNoBands) {
   // One code over 256 columns: without dither two flat
   // bands, with it every 64-column block differs.
   HdrImage image(256, 64);
@@ -225,7 +225,7 @@ TEST(Develop, ASlowGradientHasNoBands) {
   }
 }
 
-TEST(Develop, BlackStaysBlackAndAPixelThatIsNoNumberIsAFault) {
+TEST(Develop, KeepsBlackAndRefusesNan) {
   const DisplayImage display = Develop(Grey(64, 64, 0.0F), 10.0, {.curve = ToneCurve::kAgx});
   EXPECT_EQ(display.rgb, std::vector<std::uint8_t>(64 * 64 * 3, 0));
   HdrImage image = Grey(4, 4, 1.0F);
@@ -239,7 +239,7 @@ TEST(Dither, TileHoldsEveryRankOnce) {
   EXPECT_EQ(seen, std::vector<int>(seen.size(), 1));
 }
 
-TEST(Dither, NeighboursDifferAsInBlueNoise) {
+TEST(Dither, IsBlueNoise) {
   // Ranks in [0, 1): white noise differs from its neighbour by 1/3 in the mean.
   double sum = 0.0;
   for (int y = 0; y < kDitherTileSize; ++y) {
@@ -291,7 +291,7 @@ TEST(Dither, NoiseIsTriangularAndChannelsAreUncorrelated) {
 }
 
 // Hard case 32.
-TEST_F(ExrFile, PicturesAreInFloatsAndHoldTheSunsDisk) {
+TEST_F(ExrFile, StoresFloatsThatHoldTheSunsDisk) {
   // 1.6e9 cd/m^2 in the mean, and 65504 is the largest half.
   HdrImage image(3, 1);
   image.at(1, 0) = {1.9e9F, 1.6e9F, 1.4e9F};
@@ -337,7 +337,7 @@ HdrImage DiskBeforeSky(int side, double radius) {
   return image;
 }
 
-TEST(ClippedEdge, APixelIsTheMixtureOfDiskAndSkyThatItCovers) {
+TEST(ClippedEdge, PixelsMixDiskAndSkyByCoverage) {
   for (const double radius : {2.5, 5.3, 11.7}) {
     const HdrImage image = DiskBeforeSky(32, radius);
     int edges = 0;
@@ -356,7 +356,7 @@ TEST(ClippedEdge, APixelIsTheMixtureOfDiskAndSkyThatItCovers) {
   }
 }
 
-TEST(ClippedEdge, BesideADiskAreLandAlongARidgeAndSkyElsewhere) {
+TEST(ClippedEdge, NeighboursOfADiskAreLandOrSky) {
   constexpr std::array<float, 3> kLand{400.0F, 300.0F, 200.0F};
   constexpr int kRidge = 18;  // land from this row on, which is half in the sky
   HdrImage image = DiskBeforeSky(32, 9.0);
@@ -376,7 +376,7 @@ TEST(ClippedEdge, BesideADiskAreLandAlongARidgeAndSkyElsewhere) {
   EXPECT_NEAR(on_top->beside[2], kSky[2], 1e-5F * kSky[2]);
 }
 
-TEST(ClippedEdge, ADarkLimbIsNoMissingCover) {
+TEST(ClippedEdge, LimbDarkeningIsNotTakenForPartialCoverage) {
   // 0.3 + 0.93 mu - 0.23 mu^2, the sun in green light (Allen 1973), at the middle of each pixel.
   for (const double radius : {8.3, 11.7, 15.2}) {
     HdrImage image = DiskBeforeSky(36, radius);
@@ -400,7 +400,7 @@ TEST(ClippedEdge, ADarkLimbIsNoMissingCover) {
   }
 }
 
-TEST(ClippedEdge, ADisksEdgeIsSmoothOnTheDisplay) {
+TEST(ClippedEdge, EdgeOfADiskIsSmoothOnTheDisplay) {
   const HdrImage image = DiskBeforeSky(32, 7.5);
   const DisplayImage shown = Develop(image, 15.0, {.curve = ToneCurve::kAgx});
   const auto blue_less_red = [&](int x, int y) {
@@ -439,7 +439,7 @@ HdrImage DiskInAnAureole(double radius, float of_white, double fades_in) {
 
 // Clipping stands for the curve. A ring would be a third darker, like what lies three pixels
 // behind. The sky under a sun that sets fades in four pixels of a wide picture.
-TEST(ClippedEdge, ASteepAureoleHasNoDarkRingAtTheDisk) {
+TEST(ClippedEdge, SteepAureolesHaveNoDarkRingAtTheDisk) {
   constexpr double kRadius = 2.5;
   for (const double fades_in : {6.0, 4.0}) {
     for (const float of_white : {0.2F, 0.6F, 1.0F, 1.5F}) {
@@ -461,7 +461,7 @@ TEST(ClippedEdge, ASteepAureoleHasNoDarkRingAtTheDisk) {
   }
 }
 
-TEST(ClippedEdge, SparklesPlainSkyAndLightWithinTheCurveAreNone) {
+TEST(ClippedEdge, SparklesPlainSkyAndUnclippedLightAreKept) {
   HdrImage image = DiskBeforeSky(32, 0.0);
   image.at(10, 10) = {kDisk, kDisk, kDisk};
   image.at(20, 21) = {kDisk, kDisk, kDisk};
@@ -475,7 +475,7 @@ TEST(ClippedEdge, SparklesPlainSkyAndLightWithinTheCurveAreNone) {
   }
 }
 
-TEST(ClippedEdge, NothingJumpsWhileADiskGrowsDimmer) {
+TEST(ClippedEdge, IsContinuousWhileADiskDims) {
   const HdrImage image = DiskBeforeSky(32, 7.5);
   int last = -1;
   for (double ev100 = 30.0; ev100 > 10.0; ev100 -= 0.125) {

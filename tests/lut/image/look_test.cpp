@@ -25,7 +25,7 @@ TEST(Look, NamesAreCurvesOrLocal) {
   EXPECT_NE(NameOf(Look{}), NameOf(LookFromName("local")));
 }
 
-TEST(Look, IncidentMeterReadsTheSunnySixteenRule) {
+TEST(Look, IncidentMeterAgreesWithTheSunny16Rule) {
   // Sunlight of 80 to 100 klx: EV 15, f/16 at 1/125 s with ISO 100.
   EXPECT_NEAR(IncidentEv100(82000.0), 15.0, 0.01) << "log2(82000 100 / 250)";
   EXPECT_EQ(IncidentEv100(0.0), kDarkestEv100);
@@ -45,7 +45,7 @@ double StopsUnderDay(double metered_ev100, double ev100, const Look& look) {
 
 const std::vector<Look> kSomeLooks{{}, {.agx = AgxLook::kNone}, {.curve = ToneCurve::kLinear}};
 
-TEST(Look, ToTheEyeBrightnessIsTheCubeRootOfLuminance) {
+TEST(Look, EyeLookShowsTheCubeRootOfLuminance) {
   for (const Look& look : kSomeLooks) {
     EXPECT_EQ(EyeEv100(15.0, look), 15.0);
     EXPECT_EQ(EyeEv100(17.0, look), 17.0) << "by day the eye adapts as a camera does";
@@ -57,7 +57,7 @@ TEST(Look, ToTheEyeBrightnessIsTheCubeRootOfLuminance) {
   }
 }
 
-TEST(Look, ToTheEyeLightThatFalls20PercentIsShown7PercentDarker) {
+TEST(Look, EyeLookShows20PercentLessLight7PercentDarker) {
   for (double ev100 = 15.0; ev100 > kDarkestEv100 + 1.0; ev100 -= 0.25) {
     const double after = ev100 + std::log2(0.8);
     const double shown = GreyOnTheDisplay(after, EyeEv100(after, {}), {}) /
@@ -70,7 +70,7 @@ TEST(Look, ToTheEyeLightThatFalls20PercentIsShown7PercentDarker) {
 // The meter reads these values at noon, under a full moon, and under stars alone [EV].
 constexpr double kNoonEv100 = 15.0, kFullMoonEv100 = -3.0, kStarlightEv100 = -9.0;
 
-TEST(Look, ACameraPrintsAFullMoonFourStopsDarkerAndStarsSix) {
+TEST(Look, CameraLookDarkensMoonlightBy4AndStarlightBy6Stops) {
   for (const Look& look : kSomeLooks) {
     EXPECT_EQ(CameraEv100(kNoonEv100, look), kNoonEv100);
     EXPECT_EQ(CameraEv100(17.0, look), 17.0);
@@ -83,14 +83,14 @@ TEST(Look, ACameraPrintsAFullMoonFourStopsDarkerAndStarsSix) {
 
 // Krawczyk et al. (2005), equation 11, at 1 cd/m^2 and at 4096: 1.03 - 2 / 2.3010, 1.03 - 2 /
 // 5.6125.
-TEST(Look, ACameraPrintsDuskByThePublishedKey) {
+TEST(Look, CameraLookUsesThePublishedKeyAtDusk) {
   const double key = 1.03 - 2.0 / (2.0 + std::log10(2.0));
   const double day = 1.03 - 2.0 / (2.0 + std::log10(4097.0));
   EXPECT_NEAR(StopsUnderDay(3.0, CameraEv100(3.0, {}), {}), std::log2(day / key), 0.01)
       << "rods have a 400th of a stop left to say at 200 times their luminance";
 }
 
-TEST(Look, LessLightIsNeverShownBrighterByEyeOrCamera) {
+TEST(Look, EyeAndCameraLooksAreMonotonic) {
   double eye = 1.0, camera = GreyOnTheDisplay(16.0, CameraEv100(16.0, {}), {});
   for (double ev100 = 16.0; ev100 > kDarkestEv100; ev100 -= 0.05) {
     const double by_eye = GreyOnTheDisplay(ev100, EyeEv100(ev100, {}), {});
@@ -103,7 +103,7 @@ TEST(Look, LessLightIsNeverShownBrighterByEyeOrCamera) {
   }
 }
 
-TEST(Look, IncidentPicturesRollOffTheirHighlightsButNotLinearOnes) {
+TEST(Look, IncidentPicturesCompressHighlightsUnlessLinear) {
   const ExposureRule incident{ExposureRule::Kind::kIncident};
   EXPECT_TRUE(LookUnder(incident, {}).rolls_off);
   EXPECT_FALSE(LookUnder(incident, {.curve = ToneCurve::kLinear}).rolls_off);
@@ -136,7 +136,7 @@ TEST(Look, DevelopsTheLocallyExposedPicture) {
   EXPECT_GT(local.rgb.back(), Develop(image, 9.0, Look{}).rgb.back()) << "shadows are opened";
 }
 
-TEST(Look, NightVisionIsSeenBeforeItIsMetered) {
+TEST(Look, NightVisionAppliesBeforeMetering) {
   HdrImage image(4, 4);
   image.rgb.assign(16, {1e-3F, 1e-3F, 1e-3F});
   image.layers.push_back({kScotopicChannel, std::vector<float>(16, 3e-3F)});
@@ -182,7 +182,7 @@ HdrImage Uniform(const std::array<double, 3>& rgb, double luminance) {
   return image;
 }
 
-TEST(WhiteBalance, LightsHaveThePublishedChromaticities) {
+TEST(WhiteBalance, IlluminantsHaveThePublishedChromaticities) {
   // CIE 15: A is Planck's at 2856 K, D50 and D65 are daylight of 5003 and 6504 K.
   const struct {
     double kelvin, x, y;
@@ -194,7 +194,7 @@ TEST(WhiteBalance, LightsHaveThePublishedChromaticities) {
   }
 }
 
-TEST(WhiteBalance, LightsChangeWithTemperatureWithoutAJump) {
+TEST(WhiteBalance, IlluminantsAreContinuousInTemperature) {
   auto before = ChromaticityOf(kWarmestWhite_k);
   for (double mired = 1e6 / kWarmestWhite_k; mired > 1e6 / kCoolestWhite_k; mired -= 1.0) {
     const auto now = ChromaticityOf(1e6 / mired);
@@ -203,14 +203,14 @@ TEST(WhiteBalance, LightsChangeWithTemperatureWithoutAJump) {
   }
 }
 
-TEST(WhiteBalance, TheTemperatureOfALightIsFoundAgain) {
+TEST(WhiteBalance, TemperatureOfAnIlluminantIsRecovered) {
   for (const double kelvin : {1600.0, 2856.0, 4400.0, 5600.0, 6504.0, 9000.0, 20000.0}) {
     EXPECT_NEAR(1e6 / TemperatureOf(WhiteOfTemperature(kelvin)), 1e6 / kelvin, 0.1)
         << "to a tenth of a mired";
   }
 }
 
-TEST(WhiteBalance, PaperUnderTheLightThatIsAskedForIsWhiteAndAsBright) {
+TEST(WhiteBalance, PaperUnderTheIlluminantIsWhiteAndEquallyBright) {
   for (const double kelvin : {2000.0, 3000.0, 4500.0, 5600.0, 12000.0}) {
     const HdrImage paper = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(kelvin), 100.0);
     const auto rgb = Balanced(paper, OfKelvin(kelvin)).at(0, 0);
@@ -218,7 +218,7 @@ TEST(WhiteBalance, PaperUnderTheLightThatIsAskedForIsWhiteAndAsBright) {
   }
 }
 
-TEST(WhiteBalance, DaylightLeavesPicturesAloneAndAWarmerLightMakesThemBluer) {
+TEST(WhiteBalance, DaylightIsNeutralAndWarmerIlluminantsMakeBluer) {
   const HdrImage grey = Uniform({1.0, 1.0, 1.0}, 100.0);
   EXPECT_EQ(Balanced(grey, {}).rgb, grey.rgb);
   EXPECT_EQ(Balanced(grey, OfKelvin(kDaylight_k)).rgb, grey.rgb);
@@ -231,7 +231,7 @@ TEST(WhiteBalance, DaylightLeavesPicturesAloneAndAWarmerLightMakesThemBluer) {
   EXPECT_GT(lamp[2] / lamp[0], 2.0F * flash[2] / flash[0]);
 }
 
-TEST(WhiteBalance, AutoTakesTheMeteredLightForWhiteAsFarAsACameraDoes) {
+TEST(WhiteBalance, AutoAdaptsToTheMeteredLightAsFarAsCameras) {
   const auto settled = [](double kelvin) {
     const HdrImage image = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(kelvin), 500.0);
     return *Settled({WhiteBalance::Kind::kAuto}, image, Projection::kCamera).kelvin;
@@ -245,7 +245,7 @@ TEST(WhiteBalance, AutoTakesTheMeteredLightForWhiteAsFarAsACameraDoes) {
       << "no light: D65 of sRGB is off the locus in its fourth digit";
 }
 
-TEST(WhiteBalance, AutoDoesNotLookAtTheSunNorAtLamps) {
+TEST(WhiteBalance, AutoIgnoresSunAndLamps) {
   HdrImage image = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(5600.0), 500.0);
   const WhiteBalance ask{WhiteBalance::Kind::kAuto};
   const double without = *Settled(ask, image, Projection::kCamera).kelvin;
@@ -254,7 +254,7 @@ TEST(WhiteBalance, AutoDoesNotLookAtTheSunNorAtLamps) {
   EXPECT_NEAR(*Settled(ask, image, Projection::kCamera).kelvin, without, 1.0);
 }
 
-TEST(WhiteBalance, ACameraIsSetToDaylightByDayAnd4000KelvinByNight) {
+TEST(WhiteBalance, CameraIsDaylightByDayAnd4000KelvinAtNight) {
   EXPECT_EQ(CameraWhite(15.0), kDaylight_k);
   EXPECT_EQ(CameraWhite(4.0), kDaylight_k) << "the end of civil twilight";
   EXPECT_DOUBLE_EQ(CameraWhite(-2.0), 4000.0) << "a full moon";
@@ -275,7 +275,7 @@ TEST(WhiteBalance, ACameraIsSetToDaylightByDayAnd4000KelvinByNight) {
   EXPECT_NEAR(*settled(1e-3).kelvin, 4000.0, 1e-9);
 }
 
-TEST(WhiteBalance, IsCameraDaylightAutoOrKelvin) {
+TEST(WhiteBalance, AcceptsCameraDaylightAutoOrKelvin) {
   EXPECT_EQ(WhiteBalanceFromText("camera").kind, WhiteBalance::Kind::kCamera);
   EXPECT_EQ(WhiteBalanceFromText("daylight"), WhiteBalance{});
   EXPECT_EQ(WhiteBalanceFromText("auto").kind, WhiteBalance::Kind::kAuto);
@@ -288,7 +288,7 @@ TEST(WhiteBalance, IsCameraDaylightAutoOrKelvin) {
   EXPECT_EQ(NameOf(WhiteBalance{WhiteBalance::Kind::kCamera, 4000.0}), "camera, 4000 K, CAT16");
 }
 
-TEST(WhiteBalance, IsPartOfWhatIsSeen) {
+TEST(WhiteBalance, IsAppliedToSeenPictures) {
   const HdrImage lit = Uniform(LinearSrgbFromXyz() * WhiteOfTemperature(3000.0), 50.0);
   Look look;
   look.white = {WhiteBalance::Kind::kAuto};

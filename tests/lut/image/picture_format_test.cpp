@@ -37,7 +37,7 @@ TEST_F(PictureFormatTest, EveryFormatKeepsTheMetadata) {
   }
 }
 
-TEST_F(PictureFormatTest, AFileIsOfTheFormatOfItsExtension) {
+TEST_F(PictureFormatTest, ExtensionSelectsTheFormat) {
   for (const PictureFormat& format : PictureFormats())
     EXPECT_EQ(&FormatOfPicture(std::string("a.b") + format.extension), &format) << format.name;
   EXPECT_STREQ(FormatOfPicture("A.EXR").name, "EXR");

@@ -76,7 +76,7 @@ TEST(Agx, SigmoidAgreesWithThePublishedPolynomialFit) {
 }
 
 // The matrix that is passed around has its white rounded: rows sum to 1 within 1.4e-4.
-TEST(Agx, InsetIsThePublishedMatrix) {
+TEST(Agx, InsetEqualsThePublishedMatrix) {
   const double published[3][3] = {{0.842479062253094, 0.0784335999999992, 0.0792237451477643},
                                   {0.0423282422610123, 0.878468636469772, 0.0791661274605434},
                                   {0.0423756549057051, 0.0784336, 0.879142973793104}};
@@ -89,7 +89,7 @@ TEST(Agx, InsetIsThePublishedMatrix) {
   }
 }
 
-TEST(Agx, OutsetUndoesTheInset) {
+TEST(Agx, OutsetInvertsTheInset) {
   const Color colour = {0.3, 0.9, 0.05};
   const double share = shared::AgxWhiteShare(colour[0], colour[1], colour[2]);
   Color inset = {};
@@ -115,7 +115,7 @@ double Chroma(const Color& colour) {
 // and 20 degrees over the horizon.
 const std::vector<Color> kClearSky = {{3203, 5118, 9254}, {2229, 3694, 7288}};
 
-TEST(AgxLooks, ABlueSkyKeepsItsHueAndItsChromaInAPhoto) {
+TEST(AgxLooks, PhotoLookKeepsHueAndChromaOfABlueSky) {
   for (const Color& sky : kClearSky) {
     for (const double ev100 : {15.3, 16.0}) {
       const Color photo = DisplayLight(ToneCurve::kAgx, sky, ExposureScale(ev100));
@@ -130,7 +130,7 @@ TEST(AgxLooks, ABlueSkyKeepsItsHueAndItsChromaInAPhoto) {
   }
 }
 
-TEST(AgxLooks, WarmLightTurnsToYellowAsTheCurveHasIt) {
+TEST(AgxLooks, WarmLightTurnsYellowAsInAgx) {
   const Color lamp = {3.0, 1.2, 0.3};
   const double turned = Hue(DisplayLight(ToneCurve::kAgx, lamp, 1.0));
   EXPECT_GT(turned, Hue(lamp)) << "90 degrees is OKLab's yellow";
@@ -138,7 +138,7 @@ TEST(AgxLooks, WarmLightTurnsToYellowAsTheCurveHasIt) {
 
 // This holds for what is brighter than black by a code, at least, and is not at the border of what
 // is shown.
-TEST(AgxLooks, NoneShowsATonesChromaOver1p3TimesTheScenes) {
+TEST(AgxLooks, ChromaIsAtMost1p3TimesThatOfTheScene) {
   for (const std::string& name : AgxLookNames()) {
     for (const Color& hue : {Color{1.0, 0.7, 0.45}, Color{0.3, 0.5, 1.0}, Color{0.3, 0.45, 0.2},
                              Color{1.0, 0.93, 0.85}, Color{1.0, 0.1, 0.1}}) {
@@ -153,7 +153,7 @@ TEST(AgxLooks, NoneShowsATonesChromaOver1p3TimesTheScenes) {
   }
 }
 
-TEST(AgxLooks, RunFromFlatToContrasty) {
+TEST(AgxLooks, RangeFromFlatToContrasty) {
   const auto range = [](AgxLook look) {
     const auto code = [&](double stop) {
       const double y = 0.104 * std::exp2(stop);
@@ -166,7 +166,7 @@ TEST(AgxLooks, RunFromFlatToContrasty) {
   EXPECT_GT(range(AgxLook::kPhoto), range(AgxLook::kMedium));
 }
 
-TEST(AgxLooks, APhotoHasDeepShadeAndWhiteSnow) {
+TEST(AgxLooks, PhotoLookHasDeepShadeAndWhiteSnow) {
   const auto code = [](double stop) {
     const double y = 0.125 / 1.2 * std::exp2(stop);
     return 255.0 * shared::SrgbCode(DisplayLight<double>(ToneCurve::kAgx, {y, y, y}, 1.0)[1]);
@@ -178,7 +178,7 @@ TEST(AgxLooks, APhotoHasDeepShadeAndWhiteSnow) {
   EXPECT_GT(code(6.5), 254.0);
 }
 
-TEST(Agx, TheShoulderLeavesContrastNearGreyAndEndsAtWhite) {
+TEST(Agx, ShoulderKeepsContrastNearGreyAndEndsAtWhite) {
   const double grey = 20.0 / 33.0;
   for (const double stops : {0.2, 0.6, 1.1}) {
     const double code = grey + stops / 16.5;
@@ -189,7 +189,7 @@ TEST(Agx, TheShoulderLeavesContrastNearGreyAndEndsAtWhite) {
   EXPECT_DOUBLE_EQ(shared::AgxContrastWithShoulder(0.5, 1.8), shared::AgxContrast(0.5, 1.8));
 }
 
-TEST(AgxLooks, DeepShadeOfAPhotoIsInProportionToTheScene) {
+TEST(AgxLooks, PhotoLookIsLinearInDeepShade) {
   const auto light = [](double stop) {
     const double y = 0.125 / 1.2 * std::exp2(stop);
     return DisplayLight<double>(ToneCurve::kAgx, {y, y, y}, 1.0)[1];
@@ -199,13 +199,13 @@ TEST(AgxLooks, DeepShadeOfAPhotoIsInProportionToTheScene) {
         << "what the sigmoid adds to the toe at 2^" << stop;
 }
 
-TEST(AgxLooks, NamesAreKnownAndOthersRefused) {
+TEST(AgxLooks, UnknownNamesAreRefused) {
   for (const std::string& name : AgxLookNames()) EXPECT_EQ(NameOf(AgxLookFromName(name)), name);
   EXPECT_EQ(AgxLookNames().size(), 5U);
   EXPECT_THROW((void)AgxLookFromName("golden"), InputError);
 }
 
-TEST(Oklab, IsItsOwnInverseAndWhiteHasNoColour) {
+TEST(Oklab, IsInvertibleAndWhiteHasNoChroma) {
   for (const Color& colour : {Color{0.3, 0.9, 0.05}, Color{1e-4, 0.0, 2.0}}) {
     EXPECT_TRUE(tests::BandsNear(RgbOf(OklabOf(colour)), colour, 0.0, 2e-6))
         << "matrices are published to ten digits";
@@ -260,7 +260,7 @@ TEST(ToneCurves, EveryColourIsFiniteAndInRange) {
   }
 }
 
-TEST(ToneCurves, GreysAreMonotoneAndStayGrey) {
+TEST(ToneCurves, GreysStayGreyAndMonotonic) {
   for (const ToneCurve curve : Curves()) {
     double last = -1.0;
     for (double stop = -14.0; stop < 10.0; stop += 0.01) {
@@ -291,7 +291,7 @@ TEST(ToneCurves, FloatAgreesWithDouble) {
 }
 
 // Hard case 34.
-TEST(Gamut, NegativeChannelsAreMixedAwayAtConstantLuminance) {
+TEST(Gamut, NegativeChannelsAreRemovedAtConstantLuminance) {
   const Color colour = {-0.1, 0.8, 0.6};
   const Color inside = InsideGamut(colour);
   EXPECT_NEAR(inside[0], 0.0, 1e-12);
@@ -301,7 +301,7 @@ TEST(Gamut, NegativeChannelsAreMixedAwayAtConstantLuminance) {
   EXPECT_EQ(InsideGamut(Color{0.3, 0.2, 0.1}), (Color{0.3, 0.2, 0.1}));
 }
 
-TEST(ToneCurves, WhatTheMeterTakesForGreyIsPrintedGrey) {
+TEST(ToneCurves, MeteredGreyIsDisplayedAsGrey) {
   // A uniform picture of luminance 12.5 / 100 2^EV is metered at EV.
   const double ev100 = 13.0;
   const double metered = 0.125 * std::exp2(ev100);
@@ -330,7 +330,7 @@ TEST(Srgb, CodeAndLightAreInverse) {
   EXPECT_NEAR(shared::SrgbLight(0.5), 0.21404, 1e-5) << "IEC 61966-2-1";
 }
 
-TEST(ToneCurves, NamesAreKnownAndOthersRefused) {
+TEST(ToneCurves, UnknownNamesAreRefused) {
   EXPECT_EQ(ToneCurveFromName("agx"), ToneCurve::kAgx);
   EXPECT_EQ(ToneCurveFromName("pbr-neutral"), ToneCurve::kPbrNeutral);
   EXPECT_THROW((void)ToneCurveFromName("filmic"), InputError);

@@ -69,7 +69,7 @@ class AureoleAir {
 //
 // p_M at 1 degree is the published one of OPAC's continental average at 550 nm, 3.7325 / sr, which
 // is normalised within 1 %. Higher orders add less than the optical depth of all scattering, 15 %.
-TEST(Aureole, OfEarthAtOneDegreeIsThatOfContinentalAir) {
+TEST(Aureole, OfEarthAtOneDegreeEqualsThatOfContinentalAir) {
   const Medium earth = MediumPreset("earth", {500.0, 550.0, 600.0});
   const double sun_deg = 30.0;
   const double m = 1.0 / std::sin(sun_deg * kRadiansPerDegree);
@@ -99,7 +99,7 @@ TEST(Aureole, OfEarthIsMoreThanTwiceThatOfOneLobe) {
 
 // The glow of haze is wide; in clear air there is little but the narrow peak about the sun, which
 // stands out against a bluer and darker sky.
-TEST(Aureole, IsTheSmallerTheCleanerTheAir) {
+TEST(Aureole, IsSmallerInCleanerAir) {
   double wider = 1e9;
   for (const char* preset : {"hazy", "earth", "clear-mountain"}) {
     const AureoleAir air(MediumPreset(preset));
@@ -230,21 +230,21 @@ void ExpectMultipleScatteringOfEveryAzimuth(const Medium& medium,
   }
 }
 
-class AzimuthFanOf : public testing::TestWithParam<int> {};
+class AzimuthFanOfBands : public testing::TestWithParam<int> {};
 
-TEST_P(AzimuthFanOf, BandsIsTheLightOfEveryAzimuthScalarOrPolarised) {
+TEST_P(AzimuthFanOfBands, EqualsTheLightOfEveryAzimuth) {
   ExpectMultipleScatteringOfEveryAzimuth(
       InScalarLight(MediumPreset("earth", WavelengthSet(GetParam()))));
   ExpectMultipleScatteringOfEveryAzimuth(MediumPreset("earth", WavelengthSet(GetParam())));
 }
 
-TEST(AzimuthFan, IsTheLightOfEveryAzimuthWithASeparatePeak) {
+TEST(AzimuthFan, WithASeparatePeakEqualsTheLightOfEveryAzimuth) {
   MultipleScatteringOptions options = kSmall;
   options.delta_m = true;
   ExpectMultipleScatteringOfEveryAzimuth(MediumPreset("mars", {550.0, 650.0}), options);
 }
 
-INSTANTIATE_TEST_SUITE_P(AnyNumber, AzimuthFanOf, testing::Values(3, 4, 6));
+INSTANTIATE_TEST_SUITE_P(AnyNumber, AzimuthFanOfBands, testing::Values(3, 4, 6));
 
 }  // namespace
 }  // namespace alpenglow::lut

@@ -74,7 +74,7 @@ MultipleScatteringOptions WithFewSuns(MultipleScatteringOptions options) {
   return options;
 }
 
-TEST(DeltaM, TakesNoAbsorptionAwayAndEndsThePhaseFunction) {
+TEST(DeltaM, KeepsAbsorptionAndTruncatesThePhaseFunction) {
   const Medium mars = MediumPreset("mars");
   const DeltaScaledMedium rest = WithoutPeak(mars, 8);
   const std::size_t bands = mars.wavelengths_nm.size();
@@ -89,7 +89,7 @@ TEST(DeltaM, TakesNoAbsorptionAwayAndEndsThePhaseFunction) {
   }
 }
 
-TEST(DeltaM, OfAirWithoutAerosolIsNothing) {
+TEST(DeltaM, WithoutAerosolChangesNothing) {
   const Medium clear = Haze(0.0, 0.0);
   const SingleScattering<float> air(clear);
   const ViewRay ray = RayFromAngles(2.0, 50.0, 10.0, 60.0);
@@ -184,7 +184,7 @@ TEST(DeltaM, SegmentsThroughThickHazeHaveFiniteLight) {
 }
 
 // The ozone behind the last sample is neglected.
-TEST(DeltaM, TransmittanceOfAWayIsThatOfTheClosedFormUpAndDown) {
+TEST(DeltaM, TransmittanceEqualsTheClosedFormUpAndDown) {
   const Medium hazy = MediumPreset("hazy");
   const DeltaM peak(hazy, 6);
   const SingleScattering<float> air(hazy);
@@ -199,7 +199,7 @@ TEST(DeltaM, TransmittanceOfAWayIsThatOfTheClosedFormUpAndDown) {
   }
 }
 
-TEST(DeltaM, BeamBelowAltitudeZeroIsThatOfAltitudeZero) {
+TEST(DeltaM, BeamBelowAltitudeZeroEqualsThatAtAltitudeZero) {
   const ScaledBeam beam(MediumPreset("hazy"), 6);
   for (const double height_m : {-430.0, -10e3})
     EXPECT_EQ(beam.At(height_m, 0.7), beam.At(0.0, 0.7));
@@ -216,7 +216,7 @@ TEST(OptionsFor, ThinAirWithNarrowLobesTreatsThemSeparately) {
   EXPECT_FALSE(OptionsFor(medium).delta_m) << "there is hardly any aerosol";
 }
 
-TEST(DeltaM, ComesBackFromStoredValues) {
+TEST(DeltaM, SurvivesARoundTripThroughStoredValues) {
   const Medium haze = Haze(7.992e-5, 8.88e-5);
   const MultipleScatteringOptions few{.altitudes = 8,
                                       .sun_angles = 12,
@@ -292,7 +292,7 @@ TEST(DeltaM, LightOfABackwardLobeIsFiniteAboveAllMolecules) {
 }
 
 // The column below a point is the difference of columns from the ground and from the point up.
-TEST(DeltaM, LightFromBelowIsThatOfTheColumnBelow) {
+TEST(DeltaM, LightFromBelowComesFromTheColumnBelow) {
   const SingleScattering<float> air(WithBackwardLobe());
   const auto columns_km = [&](double altitude_m) {
     std::array<float, 3> columns = air.ColumnsToSpace(altitude_m, 1.0);

@@ -66,7 +66,7 @@ class LaneKrylovTest : public testing::Test {
   AlignedFloats solutions_{kRows * kBlockBands};
 };
 
-TEST_F(LaneKrylovTest, FindsTheSolutionsInAsManyStepsAsThereAreRows) {
+TEST_F(LaneKrylovTest, SolvesSystemsInAsManyStepsAsRows) {
   LaneKrylov krylov(Product(solutions_));
   LaneNumbers before = Norms(Product(solutions_));
   for (std::size_t step = 0; step < kRows; ++step) {
@@ -81,7 +81,7 @@ TEST_F(LaneKrylovTest, FindsTheSolutionsInAsManyStepsAsThereAreRows) {
     EXPECT_NEAR(found.data()[i], solutions_.data()[i], 1e-5F) << "rounding of float";
 }
 
-TEST_F(LaneKrylovTest, ALaneThatIsSolvedOrEmptyStaysFinite) {
+TEST_F(LaneKrylovTest, SolvedAndEmptyLanesStayFinite) {
   for (std::size_t row = 0; row < kRows; ++row) {
     solutions_.data()[kBlockBands * row] = 0.0F;  // the first system has no right side
     matrices_[1][row].fill(0.0);                  // the second is solved by the first step

@@ -54,7 +54,7 @@ std::vector<double> MidpointCoefficients(const PhaseFunction& phase, int degree,
 }
 
 // 40000 midpoints are exact to 1e-7 for lobes of 3 degrees and wider.
-TEST(LegendreCoefficients, OfEveryKindAreTheIntegralsToOneInAMillion) {
+TEST(LegendreCoefficients, OfEveryKindEqualTheIntegralsToOneInAMillion) {
   using enum PhaseKind;
   const PhaseFunction phases[] = {
       {.kind = kRayleigh},
@@ -97,7 +97,7 @@ TEST(SphericalHarmonics, AreOrthonormalOverTheSphere) {
   }
 }
 
-TEST(MultipleScattering, SunCoordinateAndItsInverseAgree) {
+TEST(MultipleScattering, SunCoordinateIsInvertible) {
   for (double v = 0.0; v <= 1.0; v += 0.01) {
     EXPECT_NEAR(MultipleScattering::SunCoordinate(MultipleScattering::SunNodes().MuS(v)), v, 1e-12);
   }
@@ -112,7 +112,7 @@ TEST(MultipleScattering, EmptyAirOverABlackPlanetIsDark) {
   for (const float value : light.values()) EXPECT_EQ(value, 0.0F);
 }
 
-TEST(MultipleScattering, ComesBackFromItsValues) {
+TEST(MultipleScattering, SurvivesARoundTripThroughItsValues) {
   const Medium air = MediumPreset("bruneton2017");
   const MultipleScattering light(air, tests::kSmallLight);
   const MultipleScattering back(air, tests::kSmallLight,
@@ -151,7 +151,7 @@ TEST(MultipleScattering, NumbersOfNodesOutOfRangeAreRefusedByName) {
   EXPECT_EQ(RefusalOf(&Options::tolerance, -0.5).find("tolerance is -0.5"), 0U);
 }
 
-TEST(MultipleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
+TEST(MultipleScattering, EveryBandHasItsOwnPhaseFunction) {
   Medium medium = MediumPreset("hazy");
   medium.mie_phase.clear();
   for (const double g : {0.5, 0.6, 0.7, 0.8}) {
@@ -176,7 +176,7 @@ TEST(MultipleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
   }
 }
 
-TEST(LegendreCoefficients, OfATableAreThoseOfItsBrokenLine) {
+TEST(LegendreCoefficients, OfATableAreThoseOfLinearInterpolation) {
   const Medium desert = MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "desert");
   const PhaseFunction& phase = desert.mie_phase.front();
   const auto chi = LegendreCoefficients(phase, 6);
@@ -210,7 +210,7 @@ TEST(MultipleScattering, IsTheSameForAnyNumberOfThreads) {
 }
 
 // The radiances are those of reference::TraceRadiance with max_order one more, to 0.1 %.
-TEST(MultipleScattering, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
+TEST(MultipleScattering, AGivenNumberOfOrdersEqualsPathsOfThatLength) {
   const Medium air = MediumPreset("bruneton2017");
   const ViewRay ray = RayFromAngles(1000.0, 60.0, 90.0, 50.0);
   const SingleScattering<float> single_scattering(air);
@@ -230,7 +230,7 @@ TEST(MultipleScattering, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
   }
 }
 
-TEST(MultipleScattering, TenNodesKeepATenthOfAPercentInHaze) {
+TEST(MultipleScattering, TenNodesAreAccurateToATenthOfAPercentInHaze) {
   const Medium hazy = MediumPreset("hazy");
   MultipleScatteringOptions options{
       .altitudes = 8, .sun_angles = 16, .ray_nodes = 32, .exact_orders = 1};
@@ -256,7 +256,7 @@ TEST(MultipleScattering, TenNodesKeepATenthOfAPercentInHaze) {
 }
 
 // Hard case 29.
-TEST(MultipleScattering, ThickConservativeAirConvergesOrSaysThatItDoesNot) {
+TEST(MultipleScattering, ThickConservativeAirConvergesOrReportsIt) {
   Medium medium = MediumPreset("bruneton2017");
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
     medium.mie_scattering_per_m[band] = medium.mie_extinction_per_m[band] =
@@ -322,7 +322,7 @@ TEST(MultipleScattering, TwilightAgreesWithPathTracingToOnePercent) {
   ExpectStoredTotals("twilight", {"earth", "earth_a03", "rayleigh", "spec5"}, 1e-2);
 }
 
-TEST(MultipleScattering, AirBeforeALowSunAgreesWithPathTracing) {
+TEST(MultipleScattering, AirInFrontOfALowSunAgreesWithPathTracing) {
   // The glow around the sun of light scattered twice by aerosol is narrower than degree 6.
   ExpectStoredTotals("aerial perspective", {"earth", "haze20mix", "spec5"}, 1.5e-2);
 }
@@ -355,7 +355,7 @@ TEST(MultipleScattering, HazeAgreesWithTheReferenceAtLowSunAndInTwilight) {
 }
 
 // The irradiances are those of reference::TraceIrradiance, to 0.3 %.
-TEST(MultipleScattering, HorizontalSurfacesAreLitAsByThePathTracer) {
+TEST(MultipleScattering, LightOnHorizontalSurfacesAgreesWithPathTracing) {
   struct Surface {
     double altitude_m, sun_deg, up;
     std::array<double, 4> traced;
@@ -406,7 +406,7 @@ TEST(MultipleScattering, IsNeverNegative) {
 }
 
 // Ramamoorthi and Hanrahan's sum is written out. What the series misses follows P_8.
-TEST(MultipleScattering, SlopesAreLitByTheClampedCosineOfTheMoments) {
+TEST(MultipleScattering, LightOnSlopesIsTheClampedCosineOfTheMoments) {
   const Medium medium = MediumPreset("earth");
   MultipleScatteringOptions options = tests::kSmallLight;
   options.degree = 6;
@@ -483,7 +483,7 @@ TEST(MultipleScattering, SkyIrradianceAgreesWithPathTracing) {
 }
 
 // Hard case 31.
-TEST(MultipleScattering, ThinnestAndThickestLayersGiveLight) {
+TEST(MultipleScattering, ThinnestAndThickestLayersHaveLight) {
   for (const auto& [rayleigh_m, mie_m] : {std::pair{200.0, 100.0},
                                           {8000.0, 100.0},
                                           {8000.0, 200e3},
@@ -510,7 +510,7 @@ TEST(MultipleScattering, ThinnestAndThickestLayersGiveLight) {
 }
 
 // Hard case 29.
-TEST(MultipleScattering, AtOpticalDepthFiftyItSaysWhenOrdersAreMissing) {
+TEST(MultipleScattering, MissingOrdersAreReportedAtOpticalDepthFifty) {
   Medium medium = MediumPreset("bruneton2017");
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
     medium.mie_extinction_per_m[band] = 50.0 / medium.mie_scale_height_m;
@@ -539,7 +539,7 @@ Medium ThickMolecules(double optical_depth) {
   return medium;
 }
 
-TEST(MultipleScattering, EachAirWithMissingOrdersIsNamedOnStandardError) {
+TEST(MultipleScattering, MediaWithMissingOrdersAreNamedOnStandardError) {
   MultipleScatteringOptions few = tests::kSmallLight;
   few.max_orders = 20;
   int airs = 0;
@@ -561,7 +561,7 @@ TEST(MultipleScattering, EachAirWithMissingOrdersIsNamedOnStandardError) {
 
 // The irradiances are those of 1e6 paths each of scalar light through a plane layer, with a standard
 // error of 0.2 to 0.6 %; the curvature of the planet changes them by less than 1 %.
-TEST(MultipleScattering, ThickMoleculesLightTheGroundLikePaths) {
+TEST(MultipleScattering, LightBelowThickMoleculesAgreesWithPaths) {
   struct Layer {
     double depth, albedo, sun_60, sun_0;
   };
@@ -588,7 +588,7 @@ TEST(MultipleScattering, ThickMoleculesLightTheGroundLikePaths) {
 
 // The irradiances are those of 1e6 paths through a plane layer, with a standard error of 0.1 to
 // 0.2 %.
-TEST(MultipleScattering, ThickFogLightsTheGroundLikePaths) {
+TEST(MultipleScattering, LightBelowThickFogAgreesWithPaths) {
   Medium medium = ThickMolecules(0.0);
   medium.polarised = false;
   medium.mie_scale_height_m = 1200.0;
@@ -606,7 +606,7 @@ TEST(MultipleScattering, ThickFogLightsTheGroundLikePaths) {
 
 // The irradiance is that of skylut eval --method path-trace --max-error 3%: 0.0352, with a standard
 // error of 0.001. It contains polarisation.
-TEST(MultipleScattering, ThickPolarisedMoleculesLightTheGroundLikePaths) {
+TEST(MultipleScattering, PolarisedLightBelowThickMoleculesAgreesWithPaths) {
   const Medium thick = ThickMolecules(16.0);
   MultipleScatteringOptions options = OptionsFor(thick);
   options.sun_angles = tests::ScaledDown(options.sun_angles, 12);
@@ -616,7 +616,7 @@ TEST(MultipleScattering, ThickPolarisedMoleculesLightTheGroundLikePaths) {
       << "two standard errors";
 }
 
-TEST(MultipleScattering, DefaultOptionsKeepTheLightOfThickMolecules) {
+TEST(MultipleScattering, DefaultOptionsAreAccurateForThickMolecules) {
   Medium medium = ThickMolecules(5.0);
   medium.ground_albedo = {0.0};
   MultipleScatteringOptions options;
@@ -630,7 +630,7 @@ TEST(MultipleScattering, DefaultOptionsKeepTheLightOfThickMolecules) {
 
 // The irradiances are those of reference::TraceIrradiance, to 0.4 %, in the
 // blue under the lower sun to 0.8 %.
-TEST(MultipleScattering, APeakNarrowerThanTheDirectionsStillLightsTheGround) {
+TEST(MultipleScattering, NarrowPeaksLightTheGround) {
   const Medium mars = MediumPreset("mars", {450.0, 650.0});
   const MultipleScattering light(mars);
   const std::pair<double, std::array<double, 2>> traced[] = {{20.0, {0.229906, 0.324081}},

@@ -109,12 +109,12 @@ void ExpectErrorsOfPublished(const Errors& errors) {
   EXPECT_LT(errors.worst_polarised, 0.002);
 }
 
-TEST(PolarisedLight, IsThePublishedOneOfALayerOfMolecules) {
+TEST(PolarisedLight, AgreesWithPublishedValuesOfAMolecularLayer) {
   const auto rows = std::span(slab::kRows).last(tests::ScaledDown<std::size_t>(9, 3));
   ExpectErrorsOfPublished(ErrorsOver(rows, OptionsFor));
 }
 
-TEST(PolarisedLight, OfThinAndThickLayersIsRightToATenthOfAPercent) {
+TEST(PolarisedLight, OfThinAndThickLayersIsAccurateTo0p1Percent) {
   // The thinnest layers come first, and take the fewest orders.
   const Errors usual = ErrorsOver(
       std::span(slab::kSolvedRows).first(tests::ScaledDown<std::size_t>(9, 2)), OptionsFor);
@@ -123,7 +123,7 @@ TEST(PolarisedLight, OfThinAndThickLayersIsRightToATenthOfAPercent) {
   EXPECT_LT(usual.worst_polarised, 0.003) << "0.21 % at an optical depth of 1";
 }
 
-TEST(PolarisedLight, IsThePublishedOneInEveryDirection) {
+TEST(PolarisedLight, AgreesWithPublishedValuesInEveryDirection) {
   constexpr int kEvery = tests::ScaledDown(1, 19);
   int rows_read = 0;
   std::map<std::pair<double, double>, std::vector<slab::Row>> layers;
@@ -198,7 +198,7 @@ TEST(PolarisedLight, AgreesWithPathsInDepolarisingAirAndHaze) {
   }
 }
 
-TEST(PolarisedLight, OfAirWithoutMoleculesIsScalarLight) {
+TEST(PolarisedLight, WithoutMoleculesIsScalarLight) {
   Medium medium = MediumPreset("hazy", {550.0});
   std::fill(medium.rayleigh_scattering_per_m.begin(), medium.rayleigh_scattering_per_m.end(), 0.0);
   const Sky sky(medium, {});
@@ -215,7 +215,7 @@ TEST(PolarisedLight, OfAirWithoutMoleculesIsScalarLight) {
   }
 }
 
-TEST(PolarisedLight, ValuesAtNodesAreTheNodesAndSurfacesSeeTheSky) {
+TEST(PolarisedLight, ValuesAtNodesEqualTheNodes) {
   const MultipleScattering light(InPolarisedLight(MediumPreset("bruneton2017"), "bruneton2017"),
                                  tests::kSmallLight);
   const auto suns = static_cast<std::size_t>(tests::kSmallLight.sun_angles);
@@ -235,7 +235,7 @@ TEST(PolarisedLight, ValuesAtNodesAreTheNodesAndSurfacesSeeTheSky) {
   }
 }
 
-TEST(PolarisedLight, OfDirectIntegrationIsThatOfTheReference) {
+TEST(PolarisedLight, OfDirectIntegrationEqualsTheReference) {
   const Medium medium = MediumPreset("earth");
   ASSERT_TRUE(medium.polarised);
   const DirectScattering direct(medium), scalar(InScalarLight(medium));

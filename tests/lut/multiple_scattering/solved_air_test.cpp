@@ -10,7 +10,7 @@ namespace {
 
 using tests::Earth;
 
-TEST(SolvedAir, DraftIsGoodEnoughForAMoment) {
+TEST(SolvedAir, DraftIsAccurateToAFewPercent) {
   for (const char* name : {"earth", "hazy"}) {
     const Medium medium = MediumPreset(name);
     const SolvedAir full(medium), draft(medium, AirSolution::kDraft);
@@ -26,7 +26,7 @@ TEST(SolvedAir, DraftIsGoodEnoughForAMoment) {
   }
 }
 
-TEST(SolvedAir, RaysOverAnotherPlaceRunOnItsSphere) {
+TEST(SolvedAir, RaysOverAnotherPlaceUseItsSphere) {
   const double pole_rad = 1.5;
   const SolvedAir there = Earth().OnSphereAt(pole_rad);
   EXPECT_EQ(there.medium(), OnOsculatingSphere(Earth().medium(), pole_rad));
@@ -35,7 +35,7 @@ TEST(SolvedAir, RaysOverAnotherPlaceRunOnItsSphere) {
   EXPECT_EQ(&there.beam(), &Earth().beam());
 }
 
-TEST(SolvedAir, BeamIsThatOfRefractedRays) {
+TEST(SolvedAir, BeamEqualsThatOfRefractedRays) {
   constexpr double kAltitude_m = 500.0, kMu = 0.02;
   const Bands<float> straight = Earth().single_scattering().TransmittanceToSpace(kAltitude_m, kMu);
   const Bands<float> factor = Earth().beam().OverStraight(kAltitude_m, kMu);

@@ -93,7 +93,7 @@ double RatioToTable(const Daylight& daylight, double apparent_deg) {
   return daylight.Lux(TrueElevation(apparent_deg)) / PublishedLux().at(apparent_deg);
 }
 
-TEST(Twilight, MoleculesThinOutAsInTheStandardAtmosphere) {
+TEST(Twilight, DensityOfMoleculesFollowsTheStandardAtmosphere) {
   const std::map<double, double> standard = Table("ussa76_profile.csv", 0, 6);
   const Medium medium = MediumPreset("earth");
   double column_m = 0.0, last_km = 0.0, last_density = 1.0;
@@ -121,7 +121,7 @@ TEST(Twilight, IsAsBrightAsPublished) {
   }
 }
 
-TEST(Twilight, OfOneExponentialIsTooBrightBecauseAirIsTooDenseHighUp) {
+TEST(Twilight, OfOneExponentialIsTooBright) {
   const double height_m = 8000.0;
   const double too_dense = std::exp(-40e3 / height_m) / DensityAt40Km();
   EXPECT_NEAR(too_dense, 2.1, 0.1) << "the reason: molecules at 40 km, times too many";
@@ -169,7 +169,7 @@ TEST_F(MarsSky, DustHasAPhaseFunctionAtEveryWavelength) {
   }
 }
 
-TEST_F(MarsSky, SkyByDayIsButterscotch) {
+TEST_F(MarsSky, IsButterscotchByDay) {
   for (const double azimuth : {60.0, 120.0, 180.0}) {
     const auto colour = Sky(50.0, 30.0, azimuth);
     EXPECT_GT(colour[0], colour[1]) << "azimuth " << azimuth;
@@ -178,7 +178,7 @@ TEST_F(MarsSky, SkyByDayIsButterscotch) {
   }
 }
 
-TEST_F(MarsSky, TheSettingSunStandsInABlueGlow) {
+TEST_F(MarsSky, HasABlueGlowAroundTheSettingSun) {
   const double near = BlueOverRed(Sky(3.0, 5.0, 0.0));
   const double aside = BlueOverRed(Sky(3.0, 5.0, 40.0));
   const double opposite = BlueOverRed(Sky(3.0, 5.0, 180.0));

@@ -53,7 +53,7 @@ std::string UsualMoments() {
 
 class ReportFiles : public TemporaryFolder {};
 
-TEST_F(ReportFiles, EveryFileIsWrittenAndNothingElse) {
+TEST_F(ReportFiles, ExactlyTheStatedFilesAreWritten) {
   WriteReport(QuickReport(), folder_ / "report");
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder_ / "report"))
@@ -66,7 +66,7 @@ TEST_F(ReportFiles, EveryFileIsWrittenAndNothingElse) {
                 "all_orders.earth.svg", "panoramas.earth.svg", "refraction.earth.svg"}));
 }
 
-TEST_F(ReportFiles, ThePageNeedsNoOtherFileAndNamesWhatMadeIt) {
+TEST_F(ReportFiles, ThePageIsSelfContainedAndNamesItsProgram) {
   const std::string page = PageOf(QuickReport());
   for (const char* place : {"@findings@", "@maker@", "@topics@"})
     EXPECT_EQ(page.find(place), std::string::npos) << place;
@@ -78,7 +78,7 @@ TEST_F(ReportFiles, ThePageNeedsNoOtherFileAndNamesWhatMadeIt) {
   EXPECT_THAT(page, HasSubstr(fmt::format("{:016x}", MediumHash(ReportedAir()))));
 }
 
-TEST_F(ReportFiles, NumbersOfThePageAreThoseOfTheTables) {
+TEST_F(ReportFiles, NumbersOfThePageEqualThoseOfTheTables) {
   const std::string page = PageOf(QuickReport());
   std::vector<std::string> shown;
   const std::regex cell("data-csv=\"([^\"]*)\"");
@@ -111,7 +111,7 @@ TEST_F(ReportFiles, NumbersOfThePageAreThoseOfTheTables) {
   EXPECT_EQ(shown, expected);
 }
 
-TEST_F(ReportFiles, AFileWhereTheFolderShouldBeIsAnOutputError) {
+TEST_F(ReportFiles, AFileInPlaceOfTheFolderIsAnOutputError) {
   WriteText(folder_ / "taken", "");
   EXPECT_THROW(WriteReport(QuickReport(), folder_ / "taken"), OutputError);
 }
@@ -136,7 +136,7 @@ TEST(Report, EveryMethodTakesTimeAndTablesTakeMemory) {
   }
 }
 
-TEST(Report, MethodsOfThisLibraryKeepTheirBounds) {
+TEST(Report, MethodsOfThisLibraryKeepTheirErrorBounds) {
   for (const RegimeResult& at : RowOf("transmittance", "closed form, many at once, float").at)
     EXPECT_LT(at.error.Largest(), 1.2e-5) << "tau e^-tau times the bound of the column, 1.2e-5";
   for (const RegimeResult& at : RowOf("transmittance", "table, 256 x 64").at)
@@ -157,7 +157,7 @@ TEST(Report, MethodsOfThisLibraryKeepTheirBounds) {
   }
 }
 
-TEST(Report, MoreEffortIsLessError) {
+TEST(Report, MoreEffortGivesLessError) {
   const auto rms = [](const char* topic, const char* name, std::size_t regime) {
     return RowOf(topic, name).at[regime].error.Rms();
   };
@@ -181,7 +181,7 @@ TEST(Report, MoreEffortIsLessError) {
   }
 }
 
-TEST(Report, NoiseOfTheReferenceIsTakenFromTheErrors) {
+TEST(Report, NoiseOfTheReferenceIsSubtractedFromErrors) {
   const std::vector<ReferenceValue> references(4, {{2.0}, {0.02}, {2.0}});
   const auto statistics = [&](double off) {
     return ErrorsOf(references, {{2.0 + off}, {2.0 - off}, {2.0 + off}, {2.0}});
@@ -194,7 +194,7 @@ TEST(Report, NoiseOfTheReferenceIsTakenFromTheErrors) {
   EXPECT_NEAR(statistics(0.001).Rms(), 0.005, 1e-9) << "half of the noise, as a bound";
 }
 
-TEST(Report, DarkDirectionsCountAsAPartOfTheZenith) {
+TEST(Report, DarkDirectionsAreRelativeToTheZenith) {
   const std::vector<ReferenceValue> references{RadianceReference({1e-6}, {}, {1e-3})};
   const std::vector<std::vector<double>> answers{{1.1e-5}};
   EXPECT_NEAR(ErrorsOf(references, answers).Largest(), 0.01, 1e-9);
@@ -202,7 +202,7 @@ TEST(Report, DarkDirectionsCountAsAPartOfTheZenith) {
       << "relative to the direction's own light";
 }
 
-TEST(ReportRays, LieInTheirRegimeAndMeetAir) {
+TEST(ReportRays, AreInTheirRegimeAndMeetAir) {
   const Medium medium = MediumPreset("earth");
   for (const ReportRegime& regime : kRegimes) {
     int down = 0;
@@ -224,7 +224,7 @@ TEST(ReportRays, LieInTheirRegimeAndMeetAir) {
   }
 }
 
-TEST(ReportRays, FromSpaceTheSunStandsOverTheLowestPointOfTheRay) {
+TEST(ReportRays, FromSpaceHaveTheSunAboveTheirLowestPoint) {
   const Medium medium = MediumPreset("earth");
   const ReportRegime& space = kRegimes.back();
   ASSERT_TRUE(space.from_space);
@@ -263,7 +263,7 @@ TEST(ReportBaselines, ChapmanApproximationsAreAsGoodAsPublished) {
   }
 }
 
-TEST(ReportBaselines, FiveHundredTrapezoidsKnowTheSameAir) {
+TEST(ReportBaselines, FiveHundredTrapezoidsAgreeWithTheClosedForm) {
   for (const char* name : {"earth", "bruneton2017"}) {
     const SingleScattering<float> air(MediumPreset(name));
     for (const double mu : {0.05, 0.2, 1.0}) {

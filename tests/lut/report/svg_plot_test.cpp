@@ -38,7 +38,7 @@ TEST(QuantityText, IsShortAndHasAUnit) {
   EXPECT_EQ(QuantityText(512.0, PlotUnit::kCount), "512");
 }
 
-TEST(SvgPlot, HasAMarkAPointAndTheNameOfEverySeries) {
+TEST(SvgPlot, HasMarkerAndNameOfEverySeries) {
   const std::string svg = SvgOfPlot(PlotOf({{1e-6, 0.1, {}, "8"}, {1e-5, 0.01, 0.02, "16"}}));
   EXPECT_EQ(CountOf(svg, "class=\"mark\""), 3U) << "two points, and one in the legend";
   EXPECT_EQ(CountOf(svg, "class=\"tail\""), 1U);
@@ -46,7 +46,7 @@ TEST(SvgPlot, HasAMarkAPointAndTheNameOfEverySeries) {
   EXPECT_THAT(svg, HasSubstr("prefers-color-scheme: dark"));
 }
 
-TEST(SvgPlot, LeavesOutWhatNoLogarithmHas) {
+TEST(SvgPlot, OmitsValuesWithoutALogarithm) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::string svg =
       SvgOfPlot(PlotOf({{1e-6, 0.1, {}, ""}, {0.0, 0.1, {}, ""}, {1e-6, nan, {}, ""}}));
@@ -54,11 +54,11 @@ TEST(SvgPlot, LeavesOutWhatNoLogarithmHas) {
   EXPECT_EQ(CountOf(svg, "nan|inf"), 0U);
 }
 
-TEST(SvgPlot, APlotWithoutPointsIsAnEmptyFrame) {
+TEST(SvgPlot, WithoutPointsIsAnEmptyFrame) {
   EXPECT_EQ(CountOf(SvgOfPlot(PlotOf({})), "nan|inf"), 0U);
 }
 
-TEST(SvgPlot, MarksLieInsideTheSheet) {
+TEST(SvgPlot, MarkersLieInsideTheSheet) {
   const std::string svg = SvgOfPlot(PlotOf({{1e-9, 1e-9, {}, ""}, {10.0, 10.0, {}, ""}}));
   const std::regex centre("class=\"mark\" d=\"M([0-9.]+) ([0-9.]+)m");
   std::sregex_iterator at(svg.begin(), svg.end(), centre);

@@ -100,7 +100,7 @@ bool ShowsTheSunAt(const HdrImage& image, double column, double row) {
 
 class Orientation : public testing::TestWithParam<PanoramaCentre> {};
 
-TEST_P(Orientation, TheProgramFindsTheSunAndNotInAMirror) {
+TEST_P(Orientation, TheSunIsFoundAndNotMirrored) {
   for (const double azimuth_deg : kAzimuths_deg) {
     PanoramaOptions options = SunAtDegrees(35.0, azimuth_deg);
     options.centre = GetParam();
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(EveryProgram, Orientation,
                                          PanoramaCentre::kUnity, PanoramaCentre::kGodot),
                          [](const auto& tested) { return NameOf(tested.param); });
 
-TEST(Panorama, NamesOfOrientationsAreReadBack) {
+TEST(Panorama, NamesOfOrientationsSurviveARoundTrip) {
   for (const char* name : {"north", "blender", "openexr", "three", "unity", "godot"})
     EXPECT_EQ(NameOf(PanoramaCentreFromName(name)), name);
   EXPECT_EQ(PanoramaCentreFromName("geographic"), PanoramaCentre::kNorth);
@@ -158,7 +158,7 @@ double LuminanceOf(const Bands<Real>& relative) {
   return colour.Xyz(light)[1];
 }
 
-TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
+TEST(Panorama, IlluminanceOfAHorizontalPlaneIsThatOfTheSky) {
   for (const double elevation_deg : {50.0, 10.0, 0.0, -5.0, -9.0}) {
     const HdrImage image = Panorama(SunAtDegrees(elevation_deg, 120.0));
     const double expected = LuminanceOf(Earth().multiple_scattering().SkyIrradiance(
@@ -169,7 +169,7 @@ TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
   }
 }
 
-TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
+TEST(Panorama, PixelsEqualTheLightOfTheirDirections) {
   const DirectSky direct(Earth().medium(), Earth().multiple_scattering());
   for (const double altitude_m : {2.0, 10e3, 400e3}) {
     for (const double elevation_deg : {60.0, 10.0, 1.0, -4.0, -10.0}) {
@@ -199,7 +199,7 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
   }
 }
 
-TEST(Panorama, LayersOfPolarisationLeaveThePictureAsItIs) {
+TEST(Panorama, LayersOfPolarisationDoNotChangeThePicture) {
   PanoramaOptions options = SunAtDegrees(10.0, 0.0);
   options.width = 64;
   options.height = 32;
@@ -231,7 +231,7 @@ TEST(Panorama, LayersOfPolarisationLeaveThePictureAsItIs) {
 }
 
 // Hard case 32.
-TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
+TEST(Panorama, TheSunsDiskHasAllItsLight) {
   for (const auto& [width, height] : {std::pair{16, 8}, std::pair{256, 128}, std::pair{900, 450}}) {
     PanoramaOptions options = SunAtDegrees(41.0, 77.0);
     options.width = width;
@@ -260,7 +260,7 @@ TEST(Panorama, ASunBelowTheHorizonHasNoDisk) {
   EXPECT_EQ(Panorama(options).rgb, without.rgb);
 }
 
-TEST(Panorama, ItsCompassStandsWhereTheSunsOfTheQuartersStand) {
+TEST(Panorama, CompassAgreesWithSunsAtTheQuarters) {
   PanoramaOptions options = SunAtDegrees(5.0, 45.0);
   options.width = 720;
   options.height = 360;
@@ -292,7 +292,7 @@ TEST(Panorama, IsTheSameForAnyNumberOfThreads) {
 }
 
 // Hard case 44.
-TEST(Panorama, OnePixelIsAPicture) {
+TEST(Panorama, OnePixelIsAllowed) {
   PanoramaOptions options = SunAtDegrees(30.0, 0.0);
   options.width = options.height = 1;
   EXPECT_GT(Luminance(Panorama(options).at(0, 0)), 0.0);

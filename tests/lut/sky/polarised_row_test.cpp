@@ -41,7 +41,7 @@ double Evaluated(const SolvedAir& lit, const ViewRay& ray, std::size_t band,
   return double{(once.*part)[band]} + double{(more.*part)[band]};
 }
 
-TEST(PolarisedRow, IsTheLightOfItsDirectionsOnBothSidesOfTheSun) {
+TEST(PolarisedRow, EqualsTheLightOfItsDirections) {
   const SolvedAir& lit = tests::Earth();
   for (const double altitude_m : {2.0, 10e3}) {
     for (const double sun_deg : {60.0, 10.0, 0.0, -4.0}) {
@@ -117,7 +117,7 @@ class Meridian {
 // and Brewster's below it by 10 to 25 degrees, nearer to a high sun. Arago's is 18 to 25 degrees
 // over the antisolar point of a low sun, farther in the blue than in the red and after sunset than
 // before.
-TEST(PolarisedSky, NeutralPointsStandWhereTheyAreObserved) {
+TEST(PolarisedSky, NeutralPointsAreAtTheirObservedPlaces) {
   for (const char* air : {"clear-mountain", "hazy"}) {
     const SolvedAir& lit = AirOf(air);
     const auto points_at = [&](double sun_deg, std::size_t band) {

@@ -37,7 +37,7 @@ const DirectSky& DirectSkyOfEarth() {
   return direct;
 }
 
-TEST(SkyViewMap, CoordinatesAndAnglesAreInverse) {
+TEST(SkyViewMap, CoordinatesAreInvertible) {
   for (const double altitude_m : kAltitudes_m) {
     const SkyViewMap map(MediumPreset("earth"), altitude_m, Sine(-4.0));
     for (double v = 0.0; v <= 1.0; v += 1.0 / 64.0) {
@@ -54,7 +54,7 @@ TEST(SkyViewMap, CoordinatesAndAnglesAreInverse) {
   }
 }
 
-TEST(SkyViewMap, TheHorizonIsWhereRaysBeginToMeetTheGround) {
+TEST(SkyViewMap, HorizonIsWhereRaysBeginToMeetTheGround) {
   const Medium medium = MediumPreset("earth");
   for (const double altitude_m : {2.0, 10e3, 400e3}) {
     const double horizon = SkyViewMap(medium, altitude_m, 1.0).horizon_zenith_angle_rad();
@@ -66,7 +66,7 @@ TEST(SkyViewMap, TheHorizonIsWhereRaysBeginToMeetTheGround) {
   }
 }
 
-TEST(SkyView, ErrorsStayBelowThreePerMilleInTheMean) {
+TEST(SkyView, MeanErrorIsBelowThreePerMille) {
   constexpr int kDirections = tests::ScaledDown(60, 20);
   for (const double altitude_m : kAltitudes_m) {
     for (const double elevation_deg : kElevations_deg) {
@@ -79,7 +79,7 @@ TEST(SkyView, ErrorsStayBelowThreePerMilleInTheMean) {
   }
 }
 
-TEST(SkyView, OfHazeIsAsRight) {
+TEST(SkyView, OfHazeIsEquallyAccurate) {
   const Medium medium = MediumPreset("hazy");
   const SingleScattering<float> air(medium);
   const MultipleScattering multiple_scattering(medium);
@@ -131,7 +131,7 @@ TEST(SkyView, IsFiniteAndNotNegativeEverywhere) {
 }
 
 // Hard case 10.
-TEST(SkyView, ZenithAndNadirDoNotKnowTheAzimuth) {
+TEST(SkyView, ZenithAndNadirDoNotDependOnAzimuth) {
   const SkyView view = ViewOfEarth(10e3, 20.0);
   for (const double zenith : {0.0, kPi}) {
     const double towards = view.Radiance(zenith, 0.0)[1];
@@ -141,7 +141,7 @@ TEST(SkyView, ZenithAndNadirDoNotKnowTheAzimuth) {
 }
 
 // Hard case 37.
-TEST(SkyView, IsTheSameOnBothSidesOfTheSunAndWithoutASeam) {
+TEST(SkyView, IsSymmetricAroundTheSunWithoutASeam) {
   const SkyView view = ViewOfEarth(2.0, -3.0);
   for (const double zenith : {0.3, 1.2, 1.55, 2.0}) {
     EXPECT_EQ(view.Radiance(zenith, 1.0)[2], view.Radiance(zenith, -1.0)[2]);
@@ -153,7 +153,7 @@ TEST(SkyView, IsTheSameOnBothSidesOfTheSunAndWithoutASeam) {
   }
 }
 
-TEST(SkyView, ARowIsItsLookUps) {
+TEST(SkyView, ARowEqualsSingleLookUps) {
   const SkyView view = ViewOfEarth(1500.0, 5.0);
   std::vector<double> azimuths;
   for (int i = 0; i < 777; ++i) azimuths.push_back(0.01 * i - 2.0);
@@ -167,7 +167,7 @@ TEST(SkyView, ARowIsItsLookUps) {
   }
 }
 
-TEST(SkyView, AnyNumberOfBandsIsTheBandsOneByOne) {
+TEST(SkyView, BandsDoNotDependOnTheirNumber) {
   const Medium all = MediumPreset("earth", WavelengthSet(6));
   const Medium one = MediumPreset("earth", {all.wavelengths_nm[4]});
   const SkyView view(SingleScattering<float>(all), MultipleScattering(all, tests::kSmallLight), 2.0,
@@ -269,7 +269,7 @@ TEST(SkyView, TooFewNodesAreRefused) {
 }
 
 // Colours of an image may have a negative channel. The spectra behind them are those of light.
-TEST(SkyView, DeepTwilightHasNegativeRedAndNoNegativeLight) {
+TEST(SkyView, DeepTwilightHasNegativeRedButNoNegativeLight) {
   const Medium& medium = tests::Earth().medium();
   const BandColour colour(medium.wavelengths_nm);
   int with_negative_red = 0;
@@ -293,7 +293,7 @@ TEST(SkyView, DeepTwilightHasNegativeRedAndNoNegativeLight) {
   EXPECT_GT(with_negative_red, 100) << "ozone leaves a blue that displays do not have";
 }
 
-TEST(SkyRowKernel, LightThatIsNotANumberStaysSoAndNoneIsNegative) {
+TEST(SkyRowKernel, KeepsNanAndRemovesNegativeLight) {
   std::vector<float> row(4 * SkyNodeFloats(1), 0.0F), phase(4 * (kSkyPhaseNodes + 1), 0.0F);
   row[4] = std::nanf("");
   row[5] = -1.0F;

@@ -205,7 +205,7 @@ TEST_F(ExchangeFiles, RawFilesAreLittleEndianFromTheFirstRow) {
   EXPECT_EQ(fs::file_size(folder_ / "transmittance.dat"), 262144U);
 }
 
-TEST_F(ExchangeFiles, WhatNoProgramLoadsIsRefused) {
+TEST_F(ExchangeFiles, ImagesThatNoProgramLoadsAreRefused) {
   const auto refused = [](TableUser user, std::optional<TexelType> type,
                           std::optional<TexelFormat> format) {
     return FaultOf({.user = user, .type = type, .format = format}).has_value();
@@ -227,7 +227,7 @@ TEST_F(ExchangeFiles, WhatNoProgramLoadsIsRefused) {
 }
 
 // The constant of the demo is that of its half precision, though its files are float.
-TEST(LowestSun, IsThatOfTheProgramUnlessAnotherIsAskedFor) {
+TEST(LowestSun, IsThatOfTheProgramUnlessGiven) {
   const double demo = std::cos(102.0 / 180.0 * std::acos(-1.0));
   const ExportOptions bruneton{.user = TableUser::kBrunetonDemo};
   EXPECT_DOUBLE_EQ(LowestSunOf(bruneton), demo);
@@ -320,7 +320,7 @@ struct Errors {
   }
 };
 
-TEST_F(TakramSet, LightScatteredOnceIsThatOfTheReference) {
+TEST_F(TakramSet, SingleScatteringEqualsTheReference) {
   const Raw scattering = Bin("scattering", 256, 128);
   const Raw higher = Bin("higher_order_scattering", 256, 128);
   const Raw mie = Bin("single_mie_scattering", 256, 128);
@@ -359,7 +359,7 @@ TEST_F(TakramSet, LightScatteredOnceIsThatOfTheReference) {
   EXPECT_LT(aerosol.Quantile(0.9), 5e-4);
 }
 
-TEST_F(TakramSet, HigherOrdersAreThoseOfPathsOfFourEvents) {
+TEST_F(TakramSet, HigherOrdersEqualPathsOfFourEvents) {
   const Raw higher = Bin("higher_order_scattering", 256, 128);
   const double pi = std::acos(-1.0);
   constexpr double kError = tests::ScaledDown(2e-3, 1e-2);
@@ -385,7 +385,7 @@ TEST_F(TakramSet, HigherOrdersAreThoseOfPathsOfFourEvents) {
 // The irradiances, from above at 60 km * y / 15 with mu_s = 2 x / 63 - 1, are those of
 // reference::TraceIrradiance with max_order 3 of bruneton2017, to 0.2 %; blue first. Depolarisation
 // changes the phase function by up to 1.4 %, and not in the mean.
-TEST_F(TakramSet, IrradianceIsThatOfTheSkyScatteredUpToThreeTimes) {
+TEST_F(TakramSet, IrradianceHasThreeOrdersOfScattering) {
   struct Traced {
     std::size_t x, y;
     std::array<double, 3> value;
@@ -403,7 +403,7 @@ TEST_F(TakramSet, IrradianceIsThatOfTheSkyScatteredUpToThreeTimes) {
   }
 }
 
-TEST_F(TakramSet, TransmittanceIsThatOfTheReferenceToAHalf) {
+TEST_F(TakramSet, TransmittanceEqualsTheReferenceToHalfFloats) {
   const Raw transmittance = Bin("transmittance", 256, 64);
   std::mt19937 random(2);
   for (int i = 0; i < 100; ++i) {
@@ -431,7 +431,7 @@ void ExpectRefused(const fs::path& folder, const std::string& reason) {
               testing::AllOf(testing::StartsWith(folder.string()), testing::HasSubstr(reason)));
 }
 
-TEST_F(TakramSet, IsDescribedAndHeldAgainstTexelsOfOurOwn) {
+TEST_F(TakramSet, IsDescribedAndComparedWithOurTexels) {
   constexpr std::array kFormats{TexelFormat::kBin, TexelFormat::kExr};
   for (const TexelFormat format : std::span(kFormats).first(tests::ScaledDown<std::size_t>(2, 1))) {
     const fs::path folder = folder_ / SuffixOf(format).substr(1);
@@ -461,7 +461,7 @@ TEST_F(TakramSet, IsDescribedAndHeldAgainstTexelsOfOurOwn) {
   EXPECT_FALSE(ExchangeFolderOf(folder_ / "bin" / "atmosphere.toml").has_value());
 }
 
-TEST_F(TakramSet, OfAnotherAtmosphereThanBesideItIsRefused) {
+TEST_F(TakramSet, OfAnotherAtmosphereIsRefused) {
   Medium hazy = air_;
   for (double& k : hazy.mie_scattering_per_m) k *= 1.5;
   for (double& k : hazy.mie_extinction_per_m) k *= 1.5;
@@ -471,7 +471,7 @@ TEST_F(TakramSet, OfAnotherAtmosphereThanBesideItIsRefused) {
 
 // The loader may have combinedScattering and higherOrderScattering: false, and it assumes an
 // atmosphere.
-TEST_F(TakramSet, WhatTheLoaderCanDoWithoutMayBeAbsent) {
+TEST_F(TakramSet, OptionalFilesMayBeAbsent) {
   for (const char* name :
        {"single_mie_scattering.bin", "higher_order_scattering.bin", kMediumFileName})
     fs::remove(folder_ / name);
@@ -484,7 +484,7 @@ TEST_F(TakramSet, WhatTheLoaderCanDoWithoutMayBeAbsent) {
               testing::HasSubstr("absent      single_mie_scattering.bin"));
 }
 
-TEST_F(TakramSet, AnImageWithoutAlphaIsReadAsItsLoaderDoes) {
+TEST_F(TakramSet, ImagesWithoutAlphaAreReadAsByTheirLoader) {
   WriteExchangeTables(TakramTextures(), air_, {}, folder_);
   for (const char* name : {"scattering.bin", "irradiance.exr"}) fs::remove(folder_ / name);
   const ExchangeTexture& irradiance = TakramTextures()[1];
@@ -503,7 +503,7 @@ TEST_F(TakramSet, AnImageWithoutAlphaIsReadAsItsLoaderDoes) {
   EXPECT_LT(description.textures[1].errors.Quantile(0.5), 4e-4) << "half a step of a half";
 }
 
-TEST_F(TakramSet, ADamagedTextureIsRefusedByItsName) {
+TEST_F(TakramSet, DamagedTexturesAreRefusedByName) {
   const fs::path file = folder_ / "higher_order_scattering.bin";
   const std::string whole = ContentOf(file);
   const std::string irradiance = ContentOf(folder_ / "irradiance.bin");

@@ -106,7 +106,7 @@ class TableFile : public TemporaryFolder {
   fs::path good_, bad_;
 };
 
-TEST_F(TableFile, TransmittanceComesBackBitForBit) {
+TEST_F(TableFile, TransmittanceKeepsEveryBit) {
   const TransmittanceTable back = ReadTransmittanceTable(good_);
   EXPECT_EQ(back.texels(), Transmittance().texels());
   EXPECT_EQ(back.size().mu, 8U);
@@ -116,7 +116,7 @@ TEST_F(TableFile, TransmittanceComesBackBitForBit) {
   EXPECT_EQ(ContentOf(bad_), ContentOf(good_));
 }
 
-TEST_F(TableFile, SingleScatteringComesBackBitForBit) {
+TEST_F(TableFile, SingleScatteringKeepsEveryBit) {
   const fs::path file = folder_ / "scattering.exr";
   WriteTable(file, Scattering());
   const ScatteringTable back = ReadScatteringTable(file, MediumHash(Scattering().medium()));
@@ -126,7 +126,7 @@ TEST_F(TableFile, SingleScatteringComesBackBitForBit) {
   EXPECT_EQ(back.Lookup(ray).rayleigh[1], Scattering().Lookup(ray).rayleigh[1]);
 }
 
-TEST_F(TableFile, SingleScatteringByAzimuthComesBackWithItsAxes) {
+TEST_F(TableFile, SingleScatteringByAzimuthKeepsItsAxes) {
   const ScatteringTable table(MediumPreset("bruneton2017"),
                               {.size = {.nu = 3, .mu_s = 4, .mu = 8, .altitudes = 5},
                                .lowest_mu_s = {},
@@ -149,7 +149,7 @@ const MultipleScattering& Light() {
   return light;
 }
 
-TEST_F(TableFile, MultipleScatteringComesBackBitForBit) {
+TEST_F(TableFile, MultipleScatteringKeepsEveryBit) {
   const fs::path file = folder_ / "multiple.exr";
   const FolderUse use{.ray_nodes = 9, .transmittance = false, .single_scattering = true};
   WriteTable(file, Light(), use);
@@ -167,7 +167,7 @@ TEST_F(TableFile, MultipleScatteringComesBackBitForBit) {
   }
 }
 
-TEST_F(TableFile, PolarisedLightComesBackAndIsNeverReadAsScalar) {
+TEST_F(TableFile, PolarisedLightIsKeptAndNeverReadAsScalar) {
   const fs::path file = folder_ / "polarised.exr";
   const MultipleScattering light(InPolarisedLight(Light().medium(), "bruneton2017"),
                                  Light().options());
@@ -222,7 +222,7 @@ TEST_F(TableFile, MultipleScatteringWithOtherAttributesIsRefused) {
   }
 }
 
-TEST_F(TableFile, ChannelsAndAttributesSayWhatIsInside) {
+TEST_F(TableFile, ChannelsAndAttributesDescribeTheContent) {
   const fs::path file = folder_ / "scattering.exr";
   WriteTable(file, Scattering());
   const Imf::InputFile image(file.c_str());
@@ -241,7 +241,7 @@ TEST_F(TableFile, ChannelsAndAttributesSayWhatIsInside) {
             fmt::format("{:016x}", MediumHash(Scattering().medium())));
 }
 
-TEST_F(TableFile, EveryMediumComesBackFromItsText) {
+TEST_F(TableFile, EveryMediumSurvivesARoundTripThroughText) {
   std::vector<Medium> media;
   for (const std::string& name : MediumPresetNames()) media.push_back(MediumPreset(name));
   media.push_back(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"));
@@ -264,7 +264,7 @@ TEST_F(TableFile, EveryMediumComesBackFromItsText) {
   }
 }
 
-TEST_F(TableFile, FractionalWavelengthsHaveChannelsOfTheirOwn) {
+TEST_F(TableFile, FractionalWavelengthsHaveTheirOwnChannels) {
   const Medium medium = MediumPreset("earth", {450.25, 450.75, 600.0});
   const TransmittanceTable table(medium, {.mu = 2, .altitudes = 2});
   WriteTable(bad_, table);
@@ -317,7 +317,7 @@ TEST_F(TableFile, FlippedBytesAreRefusedOrHarmless) {
   }
 }
 
-TEST_F(TableFile, WhatIsNoFileIsRefused) {
+TEST_F(TableFile, MissingFilesAndFoldersAreRefused) {
   ExpectRefused("");
   fs::create_directory(bad_);
   ExpectRefused("is not a regular file");
@@ -328,7 +328,7 @@ TEST_F(TableFile, WhatIsNoFileIsRefused) {
   ExpectRefused("is not an OpenEXR file");
 }
 
-TEST_F(TableFile, EveryAttributeIsNeeded) {
+TEST_F(TableFile, EveryAttributeIsRequired) {
   for (const char* name : {"kind", "quantity", "units", "axes", "axisSizes", "layout", "mapVersion",
                            "mediumHash", "mediumName", "medium", "producer"}) {
     Imf::Header header = HeaderWithout(fmt::format("alpenglow.{}", name));
@@ -338,7 +338,7 @@ TEST_F(TableFile, EveryAttributeIsNeeded) {
   }
 }
 
-TEST_F(TableFile, AttributesThatSaySomethingElseAreRefused) {
+TEST_F(TableFile, ContradictingAttributesAreRefused) {
   const std::pair<const char*, const char*> changes[] = {
       {"kind", "irradiance"},    {"units", "W"},
       {"axes", "r mu"},          {"mapVersion", "2"},
@@ -366,7 +366,7 @@ TEST_F(TableFile, ATableOfAnotherKindOrAtmosphereIsRefused) {
               HasSubstr("another atmosphere"));
 }
 
-TEST_F(TableFile, ImagesThatAreNoTableAreRefused) {
+TEST_F(TableFile, OtherImagesAreRefused) {
   const auto refuse = [&](Imf::Header header, const auto& change, const char* reason) {
     change(header);
     WriteImage(header);
@@ -405,7 +405,7 @@ std::size_t DataWindowIn(const std::string& bytes) {
   return bytes.find("dataWindow") + std::strlen("dataWindow") + 1 + std::strlen("box2i") + 1 + 4;
 }
 
-TEST_F(TableFile, AHugeDataWindowIsRefusedBeforeMemoryIsTaken) {
+TEST_F(TableFile, HugeDataWindowsAreRefusedBeforeAllocation) {
   std::string bytes = ContentOf(good_);
   for (const std::int32_t side : {65535, 1 << 19, 1 << 25, 2147483646}) {
     std::memcpy(&bytes[DataWindowIn(bytes) + 8], &side, 4);
@@ -443,7 +443,7 @@ long PeakOfReading(const fs::path& file) {
 }
 
 // The library would take what an attribute claims: 1.9 GB for a table of 46 kB.
-TEST_F(TableFile, AnAttributeLongerThanTheFileTakesNoMemory) {
+TEST_F(TableFile, AttributesLongerThanTheFileAllocateNoMemory) {
   const std::string whole = ContentOf(good_);
   for (const char* attribute : {"alpenglow.medium", "alpenglow.producer", "channels"}) {
     std::string bytes = whole;
@@ -462,7 +462,7 @@ TEST_F(TableFile, AnAttributeLongerThanTheFileTakesNoMemory) {
 
 // The library decompresses sixteen rows together, and takes memory for them though the image has
 // two: 65536 texels of 40 channels are 10 MB a row, zeros of which are 10 kB in the file.
-TEST_F(TableFile, AVeryWideRowTakesNoMemory) {
+TEST_F(TableFile, VeryWideRowsAllocateNoMemory) {
   std::vector<double> wavelengths_nm;
   for (int i = 0; i < 40; ++i) wavelengths_nm.push_back(400.0 + 7.0 * i);
   WriteTable(good_,
@@ -478,7 +478,7 @@ TEST_F(TableFile, AVeryWideRowTakesNoMemory) {
   ExpectRefused("more than it can hold");
 }
 
-TEST_F(TableFile, TexelsOutsideOfZeroToOneAreRefusedWithTheirPlace) {
+TEST_F(TableFile, TexelsOutsideZeroToOneAreRefusedWithTheirPlace) {
   for (const float value : {NAN, -1e-6F, 1.001F, INFINITY}) {
     WriteImage(GoodHeader(), value);
     ExpectRefused("texel (0, 0) of channel T.0440nm");
@@ -522,7 +522,7 @@ TEST_F(TableFile, AnImageOfSeveralPartsIsRefused) {
   ExpectRefused("has 2 parts");
 }
 
-TEST_F(TableFile, ALowestSunThatCannotBeIsRefused) {
+TEST_F(TableFile, ImpossibleLowestSunsAreRefused) {
   for (const char* text : {"0.5", "nan", "-2", "", "-0.3x"}) {
     WriteTable(good_, Scattering());
     Imf::Header header = GoodHeader();

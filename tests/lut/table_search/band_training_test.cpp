@@ -108,7 +108,7 @@ std::vector<SkySpectrum> RoughSkies() {
   return spectra;
 }
 
-TEST(BandTraining, FittedSharesKeepTheSunAboveTheAir) {
+TEST(BandTraining, FittedSharesKeepTheColourOfTheSunInSpace) {
   const BandTrainer trainer(RoughSkies());
   for (const auto& set : {std::vector<double>{450.0, 600.0}, {440.0, 500.0, 545.0, 605.0, 650.0}}) {
     for (const std::vector<double>& share : trainer.Fit(set).share) {
@@ -119,7 +119,7 @@ TEST(BandTraining, FittedSharesKeepTheSunAboveTheAir) {
   }
 }
 
-TEST(BandTraining, ASearchedSetIsBetterThanAnEvenOne) {
+TEST(BandTraining, SearchedSetsAreBetterThanEvenOnes) {
   const std::vector<SkySpectrum> skies = RoughSkies();
   const BandTrainer trainer(skies);
   const std::vector<double> searched = trainer.Search(4, 10);
@@ -162,7 +162,7 @@ TEST(SkySimulator, SkyIrradianceIsTheIntegralOfRadiance) {
   }
 }
 
-TEST(SkySimulator, LandSeenThroughNoAirIsAsBrightAsItsAlbedoSays) {
+TEST(SkySimulator, LandWithoutAirHasTheRadianceOfItsAlbedo) {
   const SkySimulator& simulator = UsualSimulator();
   ViewRay down = RayFromAngles(1.0, 180.0, 0.0, 60.0);
   down.length_m = 1.0;
@@ -174,7 +174,7 @@ TEST(SkySimulator, LandSeenThroughNoAirIsAsBrightAsItsAlbedoSays) {
       << "550 nm, through 1 m of air";
 }
 
-TEST(SkySpectra, AreTheSameEveryTimeAndOfEveryRegime) {
+TEST(SkySpectra, AreReproducibleAndOfEveryRegime) {
   SkyDrawing drawing;
   drawing.atmospheres = 1;
   drawing.suns = 1;

@@ -44,7 +44,7 @@ const MultipleScattering& EarthFinest() {
   return light;
 }
 
-TEST(TableSearch, ResamplingKeepsTheNodesThatStay) {
+TEST(TableSearch, ResamplingKeepsSharedNodes) {
   const MultipleScattering half = Resampled(Small(), 5, 7, 2);
   EXPECT_EQ(half.values().size(), 5U * 7U * 7U * 3U) << "six moments and the irradiance";
   const double v = 4.0 / 12.0;  // the fifth of 13 nodes, the third of 7
@@ -56,7 +56,7 @@ TEST(TableSearch, ResamplingKeepsTheNodesThatStay) {
   EXPECT_THROW(static_cast<void>(Resampled(Small(), 5, 7, 6)), InternalError) << "it has degree 4";
 }
 
-TEST(TableSearch, ChoosesNoDegreeThatTheFinestLightLacks) {
+TEST(TableSearch, ChoosesNoDegreeBeyondTheFinestSolution) {
   const TableChoice choice = ChooseTables(
       Small(), {.max_error = 0.5, .views_of_a_kind = 4, .path_traced_views_of_a_kind = 0});
   EXPECT_LE(choice.tables.multiple_scattering->options().degree, Small().options().degree);
@@ -64,7 +64,7 @@ TEST(TableSearch, ChoosesNoDegreeThatTheFinestLightLacks) {
     ASSERT_TRUE(std::isfinite(value));
 }
 
-TEST(TableSearch, AnUnreachableErrorIsRefusedWithTheBestOne) {
+TEST(TableSearch, UnreachableErrorsAreRefusedWithTheBestOne) {
   EXPECT_THAT(tests::FaultOf([] {
                 return ChooseTables(
                     Quick(),
@@ -98,7 +98,7 @@ class ChosenTables : public TemporaryFolder {
   }
 };
 
-TEST_F(ChosenTables, SmallestAreUnderTheBoundOnUnseenViews) {
+TEST_F(ChosenTables, SmallestTablesKeepTheBoundOnUnseenViews) {
   const TableChoice choice = Chosen(TablesWanted::kSmallest, tests::ScaledDown<std::size_t>(2, 1));
   WriteTables(choice, folder_);
   const TableLookup stored(ReadTableFolder(folder_, MediumHash(EarthFinest().medium())));
@@ -114,7 +114,7 @@ TEST_F(ChosenTables, SmallestAreUnderTheBoundOnUnseenViews) {
   }
 }
 
-TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViews) {
+TEST_F(ChosenTables, AllThreeTogetherKeepTheBoundOnUnseenViews) {
   const TableChoice choice = Chosen(TablesWanted::kAll, 0);
   WriteTables(choice, folder_);
   const TableLookup stored(ReadTableFolder(folder_));
@@ -127,7 +127,7 @@ TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViews) {
   }
 }
 
-TEST(TableSearch, ASmallerErrorTakesMoreMemory) {
+TEST(TableSearch, SmallerErrorsNeedMoreMemory) {
   const TableSearch coarse{.max_error = tests::ScaledDown(0.05, 0.3),
                            .views_of_a_kind = 16,
                            .path_traced_views_of_a_kind = 0};

@@ -71,7 +71,7 @@ std::vector<double> Integrated(const SingleScattering<double>& air, const ViewRa
   return ValuesOf(air.Scatter(air.Sample(ray, {.nodes = 16, .split_ozone = true})));
 }
 
-TEST(ScatteringTable, TexelsAreTheIntegralsOfTheirRays) {
+TEST(ScatteringTable, TexelsEqualTheIntegralsOfTheirRays) {
   const ScatteringTable& table = SmallTable();
   const SingleScattering<double> air(table.medium());
   for (std::size_t altitude = 0; altitude < kSmall.altitudes; altitude += 2) {
@@ -163,7 +163,7 @@ TEST(ScatteringTable, ErrorIsBelowTheStatedBounds) {
   }
 }
 
-TEST(ScatteringTable, OnAzimuthsAndFourthRootsTwilightIsAsGoodAsDay) {
+TEST(ScatteringTable, AzimuthAxesAreAsAccurateInTwilightAsByDay) {
   const ScatteringTable table(MediumPreset("earth"),
                               {.size = {.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 48},
                                .lowest_mu_s = {},
@@ -176,7 +176,7 @@ TEST(ScatteringTable, OnAzimuthsAndFourthRootsTwilightIsAsGoodAsDay) {
   }
 }
 
-TEST(ScatteringTable, OfAzimuthsIsExactAtTheNodesAndHoldsTheIntegrals) {
+TEST(ScatteringTable, AzimuthTableIsExactAtItsNodes) {
   const ScatteringTable& table = SmallAzimuthTable();
   const SingleScattering<double> air(table.medium());
   for (std::size_t altitude = 1; altitude + 1 < kSmall.altitudes; altitude += 2) {
@@ -207,7 +207,7 @@ TEST(ScatteringTable, SunInTheZenithIsRotationallySymmetric) {
 }
 
 // Hard case 23.
-TEST(ScatteringTable, NeverNegativeNeverNaN) {
+TEST(ScatteringTable, IsNeverNegativeOrNan) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int i = 0; i < 20000; ++i) {
@@ -240,7 +240,7 @@ TEST(ScatteringTable, NightIsBlackBelowTheLowestUsefulSun) {
 }
 
 // Hard case 6.
-TEST(ScatteringTable, ObserversAboveTheTopSeeWhatRaysSeeWhereTheyEnter) {
+TEST(ScatteringTable, ObserversAboveTheTopSeeTheLightAtEntry) {
   const ScatteringTable& table = SmallTable();
   EXPECT_EQ(table.Lookup(RayFromAngles(4e5, 60.0, 0.0, 30.0)).rayleigh[0], 0.0F) << "upwards";
   EXPECT_EQ(table.Lookup(RayFromAngles(1e8, 120.0, 0.0, 30.0)).rayleigh[0], 0.0F) << "past it";
@@ -252,7 +252,7 @@ TEST(ScatteringTable, ObserversAboveTheTopSeeWhatRaysSeeWhereTheyEnter) {
   }
 }
 
-TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
+TEST(ScatteringTable, ShortRaysToTheGroundAreAccurate) {
   const ScatteringTable& table = StandardTable();
   const SingleScattering<double> air(table.medium());
   for (const double altitude_m : {0.1, 1.7, 10.0, 50.0}) {
@@ -264,7 +264,7 @@ TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
 }
 
 // Hard case 14.
-TEST(ScatteringTable, RaysThatEndAreDifferencesAndLengthZeroIsZero) {
+TEST(ScatteringTable, SegmentsAreDifferencesAndLengthZeroIsZero) {
   const ScatteringTable& table = StandardTable();
   const SingleScattering<double> air(table.medium());
   ViewRay ray = RayFromAngles(500.0, 80.0, 45.0, 50.0);
@@ -295,7 +295,7 @@ TEST(ScatteringTable, TheSmallestTableWorks) {
 }
 
 // Hard case 38.
-TEST(ScatteringTable, SizesThatCannotBeAreRefusedWithTheirBytes) {
+TEST(ScatteringTable, ImpossibleSizesAreRefusedWithTheirBytes) {
   const Medium medium = MediumPreset("earth");
   const auto fault = [&](const ScatteringTableSize& size) {
     return tests::FaultOf([&] { ScatteringTable(medium, {.size = size, .lowest_mu_s = {}}); });
@@ -323,7 +323,7 @@ TEST(ScatteringTable, NumberOfThreadsDoesNotChangeAByte) {
 }
 
 // Hard case 28.
-TEST(ScatteringTable, NoAirScattersNothing) {
+TEST(ScatteringTable, WithoutAirIsZero) {
   const ScatteringTable table(tests::WithoutAir(MediumPreset("bruneton2017")),
                               {.size = kTiny, .lowest_mu_s = {}});
   EXPECT_EQ(table.Lookup(RayFromAngles(500.0, 45.0, 30.0, 40.0)).rayleigh[0], 0.0F);
@@ -353,7 +353,7 @@ std::vector<double> GroundCosines(double h) {
   return cosines;
 }
 
-TEST(ScatteringMap, InverseReturnsTheRayToTheGroundOnADenseGrid) {
+TEST(ScatteringMap, RaysToTheGroundAreInvertible) {
   for (const double h : Altitudes()) {
     for (const double mu : GroundCosines(h)) {
       const double x = UnitFromGroundCosine<double>(h, mu, kRadius_km);
@@ -364,7 +364,7 @@ TEST(ScatteringMap, InverseReturnsTheRayToTheGroundOnADenseGrid) {
   }
 }
 
-TEST(ScatteringMap, InverseReturnsTheSunOnADenseGrid) {
+TEST(ScatteringMap, SunCoordinateIsInvertible) {
   for (const double lowest_deg : {102.0, 120.0}) {
     const double lowest = std::cos(lowest_deg * atmosphere::kRadiansPerDegree);
     for (double mu_s = lowest; mu_s <= 1.0; mu_s += 1e-4) {
@@ -380,7 +380,7 @@ TEST(ScatteringMap, InverseReturnsTheSunOnADenseGrid) {
 }
 
 // Hard case 37.
-TEST(ScatteringMap, ForwardReturnsTheCoordinateOfEveryTexelCentre) {
+TEST(ScatteringMap, TexelCentresAreInvertible) {
   for (const double n : {4.0, 6.0, 128.0}) {
     for (double i = 0.0; i < n; ++i) {
       const double u = (i + 0.5) / n;
@@ -400,7 +400,7 @@ TEST(ScatteringMap, ForwardReturnsTheCoordinateOfEveryTexelCentre) {
 }
 
 // Hard case 37.
-TEST(ScatteringMap, HalvesMeetAtTheHorizonInTheMiddle) {
+TEST(ScatteringMap, HalvesMeetAtTheHorizon) {
   const double n = 128.0;
   EXPECT_DOUBLE_EQ(MuTexelFromUnit<double>(0.0, 1.0, n), 63.5 / 128.0) << "straight down";
   EXPECT_DOUBLE_EQ(MuTexelFromUnit<double>(1.0, 1.0, n), 0.5 / 128.0) << "horizon, seen as ground";
@@ -451,7 +451,7 @@ TEST(ScatteringMap, FloatAgreesWithDouble) {
 }
 
 // Hard case 13.
-TEST(ScatteringMap, ImpossibleScatteringAnglesAreMovedToTheNearestPossible) {
+TEST(ScatteringMap, ImpossibleScatteringAnglesAreClamped) {
   EXPECT_NEAR(PossibleScatteringCosine<double>(-1.0, 0.3, 1.0), 0.3, 1e-15) << "sun in the zenith";
   EXPECT_NEAR(PossibleScatteringCosine<double>(1.0, 0.6, 0.6), 1.0, 1e-15) << "looking at the sun";
   EXPECT_NEAR(PossibleScatteringCosine<double>(-1.0, 0.6, 0.6), 0.36 - 0.64, 1e-15);
@@ -475,7 +475,7 @@ double Interpolated(double at, int nodes, const Function& function) {
   return sum;
 }
 
-TEST(CubicTaps, ReproduceAParabolaAndBetweenTwoNodesALine) {
+TEST(CubicTaps, ReproduceAParabolaOrALineBetweenTwoNodes) {
   const auto parabola = [](double x) { return 1.0 - 3.0 * x + 5.0 * x * x; };
   for (const int nodes : {3, 4, 9}) {
     for (const double at : {0.0, 0.03, 0.2, 0.5, 0.81, 0.97, 1.0})

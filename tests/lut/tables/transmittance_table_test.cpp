@@ -25,7 +25,7 @@ bool HitsGround(const Medium& medium, const ViewRay& ray) {
   return ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m).end == RayEnd::kGround;
 }
 
-TEST(TransmittanceTable, TexelsAreTheTransmittanceOfTheirRays) {
+TEST(TransmittanceTable, TexelsEqualTheTransmittanceOfTheirRays) {
   const Medium medium = MediumPreset("earth");
   const TransmittanceTable table(medium, {.mu = 9, .altitudes = 7});
   const std::size_t bands = medium.wavelengths_nm.size();
@@ -74,7 +74,7 @@ TEST(TransmittanceTable, ErrorIsBelowTheStatedBound) {
   }
 }
 
-TEST(TransmittanceTable, SegmentsAreQuotients) {
+TEST(TransmittanceTable, SegmentsAreQuotientsOfLookUps) {
   const Medium medium = MediumPreset("earth");
   const TransmittanceTable table(medium);
   std::mt19937 random(2);
@@ -110,14 +110,14 @@ TEST(TransmittanceTable, GroundIsOpaqueAndEmptySpaceIsClear) {
 }
 
 // Hard case 2.
-TEST(TransmittanceTable, ObserversBelowTheGroundSeeWhatThoseOnItSee) {
+TEST(TransmittanceTable, BelowTheGroundEqualsOnTheGround) {
   const TransmittanceTable table(MediumPreset("earth"), {.mu = 16, .altitudes = 8});
   EXPECT_EQ(table.Lookup(-430.0, 0.7)[0], table.Lookup(0.0, 0.7)[0]);
   EXPECT_GT(table.Lookup(-11000.0, 0.7)[0], 0.0F);
 }
 
 // Hard case 4.
-TEST(TransmittanceTable, OnTheTopJustAboveAndJustBelowAgree) {
+TEST(TransmittanceTable, IsContinuousAtTheTop) {
   const Medium medium = MediumPreset("earth");
   const TransmittanceTable table(medium, {.mu = 64, .altitudes = 32});
   for (const double mu : {-0.15, -0.1, -0.01, 0.3}) {
@@ -128,7 +128,7 @@ TEST(TransmittanceTable, OnTheTopJustAboveAndJustBelowAgree) {
 }
 
 // Hard case 38.
-TEST(TransmittanceTable, TwoTexelsAnAxisWork) {
+TEST(TransmittanceTable, TwoTexelsPerAxisAreEnough) {
   const Medium medium = MediumPreset("earth");
   const TransmittanceTable table(medium, {.mu = 2, .altitudes = 2});
   EXPECT_EQ(table.bytes(), 2U * 2U * medium.wavelengths_nm.size() * sizeof(float));
@@ -140,7 +140,7 @@ TEST(TransmittanceTable, TwoTexelsAnAxisWork) {
 }
 
 // Hard case 38.
-TEST(TransmittanceTable, WhatIsNoTableOrNoRayIsRefused) {
+TEST(TransmittanceTable, InvalidTablesAndRaysAreRefused) {
   const Medium medium = MediumPreset("earth");
   EXPECT_THROW(TransmittanceTable(medium, {.mu = 1, .altitudes = 64}), InputError);
   EXPECT_THROW(TransmittanceTable(medium, {.mu = 256, .altitudes = 0}), InputError);
@@ -199,7 +199,7 @@ std::vector<double> SkyCosines(double h) {
   return cosines;
 }
 
-TEST(TransmittanceMap, InverseReturnsTheAltitudeOnADenseGrid) {
+TEST(TransmittanceMap, AltitudeIsInvertible) {
   for (int i = 0; i <= 10000; ++i) {
     const double h = kMapTop_km * i / 10000.0;
     const double x = UnitFromAltitude<double>(h, kMapTop_km, kMapRadius_km);
@@ -208,7 +208,7 @@ TEST(TransmittanceMap, InverseReturnsTheAltitudeOnADenseGrid) {
   }
 }
 
-TEST(TransmittanceMap, InverseReturnsTheRayOnADenseGrid) {
+TEST(TransmittanceMap, RaysAreInvertible) {
   for (const double h : MapAltitudes()) {
     for (const double mu : SkyCosines(h)) {
       const double x = UnitFromSkyCosine<double>(h, mu, kMapTop_km, kMapRadius_km);
@@ -226,7 +226,7 @@ TEST(TransmittanceMap, InverseReturnsTheRayOnADenseGrid) {
 }
 
 // Hard case 37.
-TEST(TransmittanceMap, ForwardReturnsTheCoordinateOfEveryTexelCentre) {
+TEST(TransmittanceMap, TexelCentresAreInvertible) {
   for (const double n : {2.0, 3.0, 64.0, 256.0}) {
     for (double i = 0.0; i < n; ++i) {
       const double u = (i + 0.5) / n;
@@ -274,7 +274,7 @@ TEST(TransmittanceMap, FloatAgreesWithDouble) {
 }
 
 // Hard case 9.
-TEST(TransmittanceMap, AltitudesOfMillimetresSurviveSinglePrecision) {
+TEST(TransmittanceMap, AltitudesOfMillimetresSurviveFloats) {
   for (const double h : {1e-6, 1e-3, 1.0}) {
     const float x = UnitFromAltitude<float>(static_cast<float>(h), 120.0F, 6371.0F);
     EXPECT_NEAR(AltitudeFromUnit<float>(x, 120.0F, 6371.0F), h, 1e-6 * h)

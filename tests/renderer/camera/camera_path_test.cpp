@@ -44,7 +44,7 @@ glm::dvec3 Ecef(const Place& place) { return EcefFromGeodetic(kWgs84, place).xyz
 double Apart(const Place& a, const Place& b) { return glm::length(Ecef(a) - Ecef(b)); }
 double DegreesOf(double radians) { return radians / kRadiansPerDegree; }
 
-TEST(CameraPath, GoesThroughItsPointsAndStandsBeforeAndAfter) {
+TEST(CameraPath, PassesItsPointsAndStandsBeforeAndAfter) {
   const CameraPath path = Loop();
   for (const CameraPathPoint& point : path.points()) {
     EXPECT_EQ(path.PoseAt(point.time_s).place.latitude_rad(), point.pose.place.latitude_rad());
@@ -54,7 +54,7 @@ TEST(CameraPath, GoesThroughItsPointsAndStandsBeforeAndAfter) {
   EXPECT_EQ(path.PoseAt(99.0).place.height_m, 1500.0);
 }
 
-TEST(CameraPath, BetweenOppositePointsThereIsNoWay) {
+TEST(CameraPath, AntipodalPointsAreRefused) {
   EXPECT_THAT(tests::FaultOf([] {
                 CameraPath({PointAt(0.0, 46.5, 8.0, 0.0, 0.0), PointAt(1.0, 20.0, 8.0, 0.0, 0.0),
                             PointAt(2.0, -20.0, -172.0, 0.0, 0.0)});

@@ -260,7 +260,7 @@ bool SeesLitAir(const Planet& planet, double depression_rad) {
   return false;
 }
 
-TEST(DarkSun, AirIsDarkFromTheDepressionThatStepsAlongRaysFind) {
+TEST(DarkSun, AirIsDarkFromTheDepressionFoundByStepsAlongRays) {
   for (const Planet& planet : {Planet{6371e3, 120e3, 2.0}, Planet{6371e3, 120e3, 10e3},
                                Planet{6371e3, 120e3, 400e3}, Planet{3390e3, 60e3, 5e3}}) {
     const double dark = DepressionOfDarkAir(planet.eye_m, planet.radius_m, planet.top_m);

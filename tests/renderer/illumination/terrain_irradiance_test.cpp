@@ -75,7 +75,7 @@ double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const
   return sum * 2.0 * kPi / kAzimuths;
 }
 
-TEST(OccludedSkyIrradiance, OnAPlainIsTheIrradianceFromAbove) {
+TEST(OccludedSkyIrradiance, OnAPlainEqualsTheIrradianceFromAbove) {
   for (const double elevation : {60.0, 20.0, 3.0, -4.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
     const OccludedSkyIrradiance sky = OccludedSkyOf(to_sun);
@@ -245,7 +245,7 @@ const Mountains& DarkMountains() {
   return mountains;
 }
 
-TEST(TerrainIrradiance, IsThatOfRaysToSkyAndSlopes) {
+TEST(TerrainIrradiance, EqualsASumOverRaysToSkyAndSlopes) {
   // The bounds are the error that TerrainIrradiance states. Without horizons it would be larger.
   const Mountains snowy(30.0, 0.8F);
   for (const auto& [of, bound] : {std::pair{&DarkMountains(), 0.04}, {&snowy, 0.09}}) {

@@ -452,7 +452,7 @@ TEST(LampExtremes, ThePlanetHidesALampBeyondTheHorizon) {
   }
 }
 
-TEST(LampExtremes, AirIsLitWhereNoSeaIsBetweenItAndTheLamp) {
+TEST(LampExtremes, AirIsLitUnlessTheSeaHidesTheLamp) {
   Scene scene = NightScene();
   scene.lights = {tests::LampNear(scene.place, 40e3, 0.0, 2.0, 1e9)};
   const LampSite site(scene);

@@ -141,7 +141,7 @@ double WorstOf(const HazyAir& air, double lamp_m,
   return worst;
 }
 
-TEST(LampOverPlanet, LightsTheGroundAsTheSumOverTheSkySays) {
+TEST(LampOverPlanet, LightsTheGroundLikeASumOverTheSky) {
   EXPECT_LT(WorstOf(kClean, 20.0, {{20e3, 0.0}, {100e3, 0.0}, {200e3, 1500.0}}), 0.2)
       << "straight lines between the logarithms of three distances a decade";
   EXPECT_LT(WorstOf(kClean, 3000.0, {{30e3, 0.0}, {140e3, 0.0}}), 0.2);

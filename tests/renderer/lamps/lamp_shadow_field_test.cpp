@@ -64,7 +64,7 @@ double WrongShare(const Valley& valley, const LampShadowField& plan, int level, 
   return wrong / 5000.0;
 }
 
-TEST(LampShadowField, GroundIsOnTheSideOfTheEdgeThatShadowRaysSay) {
+TEST(LampShadowField, GroundIsOnTheSideOfTheEdgeFoundByShadowRays) {
   const Valley valley;
   const LampShadowField plan = LampShadowFieldAround(valley.stage, valley.lamp, 2);
   constexpr double kReach_m = kPlanReach_steps * kPlanStep_m;
@@ -83,7 +83,7 @@ TEST(LampShadowField, TheEdgeBehindAStraightRidgeIsWithinCentimetres) {
   }
 }
 
-TEST(LampShadowField, HasAsManyLevelsAsTheLampsLightReaches) {
+TEST(LampShadowField, LevelsReachAsFarAsTheLight) {
   EXPECT_EQ(PlanLevelsOf(1.0), 1);
   EXPECT_EQ(PlanLevelsOf(200.0), 1) << "a millilux is at 447 m, the first level ends at 508 m";
   EXPECT_EQ(PlanLevelsOf(600.0), 2) << "775 m";

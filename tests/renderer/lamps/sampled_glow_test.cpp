@@ -105,7 +105,7 @@ SlopeDeviation OverSlopes(const LampAirlightIrradiance& glow, const std::vector<
 
 constexpr std::array<int, 2> kAllRises{4, 28};  // sines of -0.6 to 0.6
 
-TEST(LampAirlightMap, LevelGroundGetsWhatItGets) {
+TEST(LampAirlightMap, LevelGroundHasTheLightOfLampAirlight) {
   const LampAirlightIrradiance glow(ClearAir(), tests::kLampPlanet_m, 1500.0, 1494.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   for (int distance = 0; distance <= 48; distance += 6) {
@@ -117,7 +117,7 @@ TEST(LampAirlightMap, LevelGroundGetsWhatItGets) {
   }
 }
 
-TEST(LampAirlightMap, SlopesInClearAirGetWhatLampAirlightSays) {
+TEST(LampAirlightMap, SlopesInClearAirHaveTheLightOfLampAirlight) {
   const LampAirlightIrradiance glow(ClearAir(), tests::kLampPlanet_m, 1500.0, 1494.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   const SlopeDeviation gentle = OverSlopes(glow, map, {0.0, 30.0}, kAllRises);
@@ -128,7 +128,7 @@ TEST(LampAirlightMap, SlopesInClearAirGetWhatLampAirlightSays) {
   EXPECT_LT(steep.most, 0.6) << "at 60 degrees, turned from the lamp";
 }
 
-TEST(LampAirlightMap, SlopesInLightFogGetWhatLampAirlightSays) {
+TEST(LampAirlightMap, SlopesInLightFogHaveTheLightOfLampAirlight) {
   const LampAirlightIrradiance glow(LightFog(), tests::kLampPlanet_m, 6.0, 0.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   const std::array<int, 2> level{15, 17};  // the lamp stands about as high as the slope

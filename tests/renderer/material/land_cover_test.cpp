@@ -294,7 +294,7 @@ TEST_F(DrapedColours, LieWhereTheGeoreferenceSays) {
   EXPECT_FALSE(drape->At({-3900.0, 0.0, 0.0}, 0.0, 1.0).has_value()) << "west of the picture";
 }
 
-TEST_F(DrapedColours, LieThereInWhateverTurnLongitudesAreCounted) {
+TEST_F(DrapedColours, DoNotDependOnTheTurnOfLongitudes) {
   constexpr double kStep = 0.001;  // degrees
   // The picture begins 0.03 degrees west of the middle of the land.
   for (const auto& [land, west] : {std::pair{8.0, 367.97},

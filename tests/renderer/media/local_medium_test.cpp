@@ -140,7 +140,7 @@ TEST(LocalMedium, AnyKindCastsItsShadowThroughItsInterface) {
   }
 }
 
-TEST(LocalMedium, IsNotLookedAtOnRaysThatMissIt) {
+TEST(LocalMedium, IsNotEvaluatedOnRaysThatMissIt) {
   const NightStage stage;
   const auto sheet = std::make_shared<const GlowingSheet>(0.5, 3.0);
   const MediaLight lit = stage.Lit({sheet});

@@ -324,7 +324,7 @@ TEST(LayerLight, IsNowhereNegative) {
   }
 }
 
-TEST(MediaLight, FogSeenFromSpaceIsThatSeenFromTheTopOfTheAir) {
+TEST(MediaLight, FogFromSpaceEqualsThatFromTheTopOfTheAir) {
   const MediaStage& stage = TheStage();
   const double radius_m = stage.medium.planet_radius_m;
   const double top_m = stage.medium.atmosphere_height_m;
@@ -445,7 +445,7 @@ TEST(RenderMedia, AGlowingVolumeShinesLikeABlackBody) {
       << "the ray through the pixel's middle crosses the 60 m at less than 2 degrees";
 }
 
-TEST(RenderMedia, GlowingVolumeIsDimmedByTheFogBeforeIt) {
+TEST(RenderMedia, GlowingVolumeIsDimmedByFogInFrontOfIt) {
   Scene scene = WithVolume(0.01, 0.0);
   scene.volumes[0].temperature_k = 2000.0;
   const HdrImage clear = Rendered(scene, kMediaNight);

@@ -208,7 +208,7 @@ TEST(MarchMedia, FogFarBelowItsBaseTakesFewNodes) {
   EXPECT_NEAR(static_cast<double>(light.radiance[0]), 1.0, 1e-3);
 }
 
-TEST(MarchMedia, PiecesHaveTheTransmittanceUpToThem) {
+TEST(MarchMedia, PiecesHaveTheTransmittanceInFrontOfThem) {
   const LocalMedia media(
       {Body(Shape::kBox, {0.0, 60.0, -20.0}, glm::dvec3(40.0), 0.05), Layer(0.0, 50.0, 0.002)}, 1);
   const glm::dvec3 from(0.0, 0.0, 5.0), way(0.0, 1.0, 0.0);

@@ -82,7 +82,7 @@ double SunlightByRays(const LitGround& lit, const TerrainHit& at) {
   return light / all;
 }
 
-TEST(LitGround, EdgesOfShadeLieWhereRaysFindThem) {
+TEST(LitGround, ShadowEdgesLieWhereRaysFindThem) {
   for (const double elevation_deg : {30.0, 10.0, 4.0}) {
     const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), elevation_deg));
     int places = 0, wrong = 0, shaded = 0;
@@ -104,7 +104,7 @@ TEST(LitGround, EdgesOfShadeLieWhereRaysFindThem) {
   }
 }
 
-TEST(LitGround, HeightsOfTheMeshAreThoseThatRaysMeet) {
+TEST(LitGround, HeightsOfTheMeshAreThoseThatRaysHit) {
   const MeshHeights heights(TheSite()->ground().terrain->mesh());
   for (int i = 1; i <= 500; ++i) {
     const double x = 7600.0 * (Halton(i, 2) - 0.5), y = 7600.0 * (Halton(i, 3) - 0.5);
@@ -117,7 +117,7 @@ TEST(LitGround, HeightsOfTheMeshAreThoseThatRaysMeet) {
   EXPECT_FALSE(heights.At(0.0, -1e6).has_value());
 }
 
-TEST(LitGround, MeshesOfAnotherDetailHaveTheSitesShadow) {
+TEST(LitGround, MeshesOfOtherDetailHaveTheShadowOfTheSite) {
   const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), 10.0));
   for (const double spacing_m : {20.0, 240.0}) {
     const Terrain other(LandMesh(RoughLand, 1 + static_cast<int>(6000.0 / spacing_m), spacing_m));
@@ -168,7 +168,7 @@ TEST(LitGround, VerticesInAFrameFarAwayAreTheSameVertices) {
   }
 }
 
-TEST(LitGround, BetweenTwoSunsTheLightRunsEvenly) {
+TEST(LitGround, LightIsInterpolatedBetweenTwoSuns) {
   // Half a second with time running sixty times: an eighth of a degree.
   const LitGround before(TheSite(), tests::RoughSun(*TheSite(), 9.875));
   const LitGround between(TheSite(), tests::RoughSun(*TheSite(), 9.9375));
@@ -189,7 +189,7 @@ TEST(LitGround, BetweenTwoSunsTheLightRunsEvenly) {
   EXPECT_LE(uneven, cut / 10) << "where another crest takes over";
 }
 
-TEST(LitGround, SkyBetweenVerticesIsThatOfThePlace) {
+TEST(LitGround, SkylightBetweenVerticesEqualsThatOfThePlace) {
   const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), 20.0));
   double sum2 = 0.0;
   constexpr int kPlaces = 500;
@@ -203,7 +203,7 @@ TEST(LitGround, SkyBetweenVerticesIsThatOfThePlace) {
   EXPECT_LT(std::sqrt(sum2), 0.03);
 }
 
-TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
+TEST(LitGround, ReliefChangesSkylightAsUnderTheOpenSky) {
   for (const double elevation_deg : {40.0, 5.0, -3.0}) {
     const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), elevation_deg));
     const glm::dvec3& to_sun = lit.lighting().source.direction.seen;

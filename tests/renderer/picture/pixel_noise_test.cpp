@@ -252,7 +252,7 @@ TEST(SharedSampleFilter, EvenLightStaysEven) {
   }
 }
 
-TEST(SharedSampleFilter, OnASlopeAreNearlyTheMiddle) {
+TEST(SharedSampleFilter, SamplesOnASlopeNearlyEqualTheMiddle) {
   // A single ray is off by 0.43 pixels rms, four rays by 0.22 and, shared, by about 0.15. The slope
   // to the neighbours leaves a second-order error of it, because their own rays are off as well.
   const SharedSampleFilter shared = Seen(PixelFilter::Kind::kBlackmanHarris, 4,
@@ -265,7 +265,7 @@ TEST(SharedSampleFilter, OnASlopeAreNearlyTheMiddle) {
   EXPECT_LT(std::sqrt(squares / ((kSharedSide - 2) * (kSharedSide - 2))), 0.05);
 }
 
-TEST(SharedSampleFilter, ManyAreNearlyTheFilteredLight) {
+TEST(SharedSampleFilter, ManySamplesNearlyEqualTheFilteredLight) {
   // The mean of x^2 over the filter is x^2 and its variance, 0.186 for each axis. 2000 rays and
   // those of neighbours have an error of 0.02.
   const PixelFilter filter(PixelFilter::Kind::kBlackmanHarris);
@@ -279,7 +279,7 @@ TEST(SharedSampleFilter, ManyAreNearlyTheFilteredLight) {
   EXPECT_NEAR(shared.Light(2, 3)[0], 1.0 + variance, 0.03);
 }
 
-TEST(SharedSampleFilter, ShareWhereTheSkyIsButNotItsLight) {
+TEST(SharedSampleFilter, SharesThePositionOfSkyButNotItsLight) {
   // Each row has its own sky, a quarter brighter than the row above; the lowest rows have many
   // rays.
   const auto sky_of = [](int row) { return static_cast<float>(std::pow(1.25, row)); };
@@ -309,7 +309,7 @@ TEST(SharedSampleFilter, ShareWhereTheSkyIsButNotItsLight) {
   EXPECT_NEAR(shared.Light(3, 5)[0], around, 1e-5F) << "has no sky of its own";
 }
 
-TEST(SharedSampleFilter, StayPositiveNextToVeryBrightLight) {
+TEST(SharedSampleFilter, StaysPositiveNextToVeryBrightLight) {
   const SharedSampleFilter shared = Seen(PixelFilter::Kind::kBlackmanHarris, 4,
                                          [](double x, double) { return x > 3.2 ? 1e6 : 1.0; });
   for (int y = 0; y < kSharedSide; ++y) {

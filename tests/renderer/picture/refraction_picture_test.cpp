@@ -336,7 +336,7 @@ class AirFromSpace {
   BendingAir air_;
 };
 
-TEST(RefractedAir, BeforeTheSeaHasTheColumnsOfTheRefractedRay) {
+TEST(RefractedAir, InFrontOfTheSeaHasTheColumnsOfTheRefractedRay) {
   for (const double height_m :
        tests::ScaledDown<std::vector<double>>({3e3, 10e3, 400e3, 36e6}, {400e3})) {
     const AirFromSpace seen(height_m);
@@ -351,7 +351,7 @@ TEST(RefractedAir, BeforeTheSeaHasTheColumnsOfTheRefractedRay) {
   }
 }
 
-TEST(RefractedAir, BeforeTheSeaIsTheSameAtEveryFieldOfView) {
+TEST(RefractedAir, InFrontOfTheSeaDoesNotDependOnTheFieldOfView) {
   const AirFromSpace seen(400e3);
   const double elevation_rad = seen.horizon_rad() - 0.4 * kRadiansPerDegree;
   const double depth = seen.Depth(elevation_rad, 1.0, 0);

@@ -116,7 +116,7 @@ double MostRelativeDifference(const HdrImage& a, const HdrImage& b) {
   return most;
 }
 
-TEST(Render, AnEyeOnAPathSeesTheSameAsOneThatStandsThere) {
+TEST(Render, AnEyeOnAPathSeesTheSameAsAStandingOne) {
   // The eye is 80 km away: its vertical differs from the frame's by 0.7 degrees.
   const UtcTime evening = ParseInstant("2026-06-21T18:40:00Z");
   const SceneRenderer from(QuickScene(1000.0, 0.0, 0.0, 40.0));

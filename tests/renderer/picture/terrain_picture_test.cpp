@@ -190,7 +190,7 @@ TEST(RenderAir, SharedAirOfAPixelIsRightToATenthOfAPercent) {
 }
 
 // Hard case 40.
-TEST_F(RenderAirFiles, ShadedAirBeforeAMountainHasNoGlow) {
+TEST_F(RenderAirFiles, ShadedAirInFrontOfAMountainHasNoGlow) {
   // A ridge across the view is 1500 m high and 4 km away; the low sun is behind it.
   const Scene scene =
       MeshScene(QuickScene(50.0, 62.0, 4.0, 10.0), folder_ / "ridge.obj",

@@ -31,7 +31,7 @@ int EdgeCount(const std::vector<bool>& edges) {
 
 TEST(ViewDifference, EvenLandHasNoEdges) { EXPECT_EQ(EdgeCount(EdgesOf(EvenLand())), 0); }
 
-TEST(ViewDifference, BesideARidgeASkylineAndAShadowPixelsAreEdges) {
+TEST(ViewDifference, PixelsBesideRidgeSkylineAndShadowAreEdges) {
   HdrImage ridge = EvenLand(), skyline = EvenLand(), shadow = EvenLand();
   for (int y = 0; y < 5; ++y) {
     for (int x = 0; x < kLandSide; ++x) {
@@ -48,7 +48,7 @@ TEST(ViewDifference, BesideARidgeASkylineAndAShadowPixelsAreEdges) {
   }
 }
 
-TEST(ViewDifference, LandThatRecedesAndSkyAreNoEdges) {
+TEST(ViewDifference, RecedingLandAndSkyAreNoEdges) {
   HdrImage image = EvenLand();
   for (int y = 0; y < kLandSide; ++y) {
     for (int x = 0; x < kLandSide; ++x)
@@ -72,7 +72,7 @@ TEST(ViewDifference, OfAKnownDifferenceHasTheKnownNumbers) {
   EXPECT_EQ(half.count(), reference.rgb.size());
 }
 
-TEST(ViewDifference, WhatIsOffBesideAnEdgeDoesNotCount) {
+TEST(ViewDifference, DifferencesBesideAnEdgeAreIgnored) {
   HdrImage reference = EvenLand();
   reference.layers[0].values[At(5, 5)] = INFINITY;
   HdrImage painted = reference;

@@ -364,21 +364,21 @@ class HeightCacheTest : public TemporaryFolder {
   WantedHeights wanted_{"range", FingerprintOf(height_m_), height_m_.size()};
 };
 
-TEST_F(HeightCacheTest, AreMadeOnceAndThenRead) {
+TEST_F(HeightCacheTest, HeightsAreMadeOnceAndThenRead) {
   const EnvironmentVariable cache("ALPENGLOW_CACHE", folder_.c_str());
   EXPECT_TRUE(HadToMake());
   EXPECT_FALSE(HadToMake());
   EXPECT_EQ(fs::file_size(OnlyFile()), 4 * sizeof(float));
 }
 
-TEST_F(HeightCacheTest, AreNotKeptIfTheVariableIsEmpty) {
+TEST_F(HeightCacheTest, IsOffIfTheVariableIsEmpty) {
   const EnvironmentVariable cache("ALPENGLOW_CACHE", "");
   EXPECT_TRUE(HadToMake());
   EXPECT_TRUE(HadToMake());
   EXPECT_EQ(CacheFolder(), std::nullopt);
 }
 
-TEST_F(HeightCacheTest, DamagedOrTruncatedOnesAreMadeAgain) {
+TEST_F(HeightCacheTest, DamagedFilesAreMadeAgain) {
   const EnvironmentVariable cache("ALPENGLOW_CACHE", folder_.c_str());
   EXPECT_TRUE(HadToMake());
   for (const char* damage : {"sixteen letters.", "short", ""}) {
@@ -388,7 +388,7 @@ TEST_F(HeightCacheTest, DamagedOrTruncatedOnesAreMadeAgain) {
   }
 }
 
-TEST_F(HeightCacheTest, OldVersionsAreRemoved) {
+TEST_F(HeightCacheTest, FilesOfOldVersionsAreRemoved) {
   const EnvironmentVariable cache("ALPENGLOW_CACHE", folder_.c_str());
   EXPECT_TRUE(HadToMake());
   height_m_[1] = 7.0F;
@@ -398,21 +398,21 @@ TEST_F(HeightCacheTest, OldVersionsAreRemoved) {
   EXPECT_EQ(FileCount(), 1U);
 }
 
-TEST_F(HeightCacheTest, UnexpectedOnesAreNeverWritten) {
+TEST_F(HeightCacheTest, UnexpectedHeightsAreNeverWritten) {
   const EnvironmentVariable cache("ALPENGLOW_CACHE", folder_.c_str());
   wanted_.fingerprint += 1;  // as on a machine whose arithmetic is another
   EXPECT_TRUE(HadToMake());
   EXPECT_EQ(FileCount(), 0U);
 }
 
-TEST_F(HeightCacheTest, DoNotNeedAWritableFolder) {
+TEST_F(HeightCacheTest, NeedsNoWritableFolder) {
   const fs::path file = folder_ / "file";
   WriteText(file, "no folder");
   const EnvironmentVariable cache("ALPENGLOW_CACHE", (file / "cache").c_str());
   EXPECT_TRUE(HadToMake());
 }
 
-TEST_F(HeightCacheTest, LieInTheCacheFolderOfTheDesktop) {
+TEST_F(HeightCacheTest, IsInTheCacheFolderOfTheDesktop) {
   const EnvironmentVariable none("ALPENGLOW_CACHE", nullptr);
   const EnvironmentVariable home("HOME", folder_.c_str());
   {
@@ -423,7 +423,7 @@ TEST_F(HeightCacheTest, LieInTheCacheFolderOfTheDesktop) {
   EXPECT_EQ(CacheFolder(), folder_ / ".cache" / "alpenglow");
 }
 
-TEST_F(HeightCacheTest, MakeNoHomeForUsersWithoutOne) {
+TEST_F(HeightCacheTest, MakesNoHomeForUsersWithoutOne) {
   const EnvironmentVariable none("ALPENGLOW_CACHE", nullptr);
   const EnvironmentVariable caches("XDG_CACHE_HOME", nullptr);
   const fs::path nobody = folder_ / "nobody";

@@ -22,7 +22,7 @@ TEST(LampWorks, RulesAgreeWithTheReferenceWhenTheyTakeManyPoints) {
   }
 }
 
-TEST(LampWorks, SunsClosedFormIsTheIntegralForIsotropicFog) {
+TEST(LampWorks, ClosedFormOfSunEtAlIsTheIntegralInIsotropicFog) {
   const auto logarithmic = [](double low, double high, double u) {
     return low * std::pow(high / low, u);
   };
@@ -41,7 +41,7 @@ TEST(LampWorks, SunsClosedFormIsTheIntegralForIsotropicFog) {
   }
 }
 
-TEST(LampWorks, SunsFunctionHasItsKnownValues) {
+TEST(LampWorks, FunctionOfSunEtAlHasItsKnownValues) {
   EXPECT_NEAR(SunFunction(0.0, 1.2), 1.2, 1e-11) << "exp(0) over the angle";
   // F(u, pi/2) = Ci(u) sin(u) + (pi/2 - Si(u)) cos(u); at u = 1 (Abramowitz and Stegun 5.2).
   EXPECT_NEAR(SunFunction(1.0, 0.5 * kPi), 0.6214496242358134, 1e-10);

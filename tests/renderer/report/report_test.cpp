@@ -125,7 +125,7 @@ TEST(PictureReport, OneGreyTransmittanceIsWrongByPercents) {
     EXPECT_LT(at.error.Rms(), 1e-5);
 }
 
-TEST(PictureReport, TheClosedFormOfSunIsOnlyForUniformIsotropicFog) {
+TEST(PictureReport, ClosedFormOfSunEtAlNeedsUniformIsotropicFog) {
   const ReportRow& row = RowOf("airlight", "Sun et al. (2005)");
   EXPECT_TRUE(row.at[0].IsMeasured());
   EXPECT_LT(row.at[0].error.Rms(), 1e-6);

@@ -62,7 +62,7 @@ TEST(Places, AnAirportIsNearTheCityThatItServes) {
   }
 }
 
-TEST(Places, AreFoundByCodeNameAndBeginningWithoutCaseAndAccents) {
+TEST(Places, AreFoundByCodeNameOrPrefixIgnoringCaseAndAccents) {
   EXPECT_EQ(PlaceNamed("LSZH").name, "Zürich Airport");
   EXPECT_EQ(PlaceNamed("kjfk").name, "New York JFK");
   EXPECT_EQ(PlaceNamed("Mont Blanc").place.height_m, 4806.0);
@@ -76,7 +76,7 @@ TEST(Places, AreFoundByCodeNameAndBeginningWithoutCaseAndAccents) {
   EXPECT_EQ(PlaceNamed("ohare").name, "Chicago O'Hare");
 }
 
-TEST(Places, OthersAreRefusedWithWhatCouldBeMeant) {
+TEST(Places, UnknownNamesAreRefusedWithSuggestions) {
   const auto fault = [](const char* text) {
     return tests::FaultOf([&] { return PlaceNamed(text).name; });
   };
@@ -92,7 +92,7 @@ TEST(Places, OthersAreRefusedWithWhatCouldBeMeant) {
   EXPECT_THAT(fault("Zermatz"), HasSubstr("did you mean Zermatt?"));
 }
 
-TEST(Places, ASearchGivesTheBestFirstAndNoMoreThanAskedFor) {
+TEST(Places, SearchesReturnTheBestFirstUpToALimit) {
   const auto found = FindPlaces("z");
   ASSERT_GE(found.size(), 2U);
   EXPECT_EQ(FindPlaces("mo", 3).size(), 3U);
@@ -126,7 +126,7 @@ TEST(Places, AListedNameLeadsToItsPlace) {
   for (const NamedPlace& place : NamedPlaces()) EXPECT_EQ(&PlaceNamed(place.name), &place);
 }
 
-TEST(Places, AListThatIsSearchedHasTheBestFirst) {
+TEST(Places, SearchedListsHaveTheBestFirst) {
   EXPECT_EQ(NamesOf(PlacesByName("zurich")),
             (std::vector<std::string>{"Zürich", "Zürich Airport"}));
   EXPECT_EQ(NamesOf(PlacesByName("ZÜRICH")), NamesOf(PlacesByName("zurich")));
@@ -137,7 +137,7 @@ TEST(Places, AListThatIsSearchedHasTheBestFirst) {
   EXPECT_TRUE(PlacesByName("qqqqqq").empty());
 }
 
-TEST(Places, TheZoneIsTheScenesThenThatOfTheNearestPlaceThenTheLongitudes) {
+TEST(Places, ZoneIsTheScenesOrTheNearestPlacesOrTheLongitudes) {
   const Place alps{46.5, 8.0, 0.0};
   EXPECT_EQ(ZoneNear(alps, "Europe/Rome", alps), "Europe/Rome");
   EXPECT_EQ(ZoneNear(alps, std::nullopt, alps), "Europe/Zurich");

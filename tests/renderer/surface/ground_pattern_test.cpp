@@ -26,7 +26,7 @@ struct TwoPlaces {
 };
 
 // Hard case 27.
-TEST(GroundPattern, OfALandIsTheSameFromEveryPlace) {
+TEST(GroundPattern, IsTheSameSeenFromEveryPlace) {
   for (const TwoPlaces& of : {TwoPlaces{46.5, 8.0, 46.52, 8.53},
                               {40.0, 180.0, 40.1, -179.9},
                               {-16.9, 179.95, -17.0, -179.95},
@@ -79,7 +79,7 @@ TEST(GroundPattern, KnowsWhereNorthIs) {
 
 class PatternsOnAPath : public TemporaryFolder {};
 
-TEST_F(PatternsOnAPath, ShowTheGroundOfStillsAtTheirPlaces) {
+TEST_F(PatternsOnAPath, EqualThoseOfStillsAtTheSamePlaces) {
   // Planes change at 52.5 degrees north.
   const std::filesystem::path model = folder_ / "land.tif";
   tests::WriteModel(model, {7.6, 53.4, 0.01, 0.01, 80, 80}, [](int column, int row) {

@@ -101,7 +101,7 @@ void ExpectWindow(const ElevationGrid& grid, double latitude, double longitude, 
       << latitude << " " << longitude;
 }
 
-TEST(WindowAround, HoldsWhatLiesWithinADistance) {
+TEST(WindowAround, ContainsEverythingWithinADistance) {
   const ElevationGrid grid = Earth(360);  // samples at half degrees
   struct Case {
     double latitude, longitude, reach_deg;

@@ -30,13 +30,13 @@ void ExpectSameGrid(const ElevationGrid& extent, const ElevationGrid& grid) {
   EXPECT_EQ(extent.step_lat_rad, grid.step_lat_rad);
 }
 
-TEST_F(LandSourceFiles, TheExtentOfAFileIsThatOfTheModel) {
+TEST_F(LandSourceFiles, ExtentEqualsThatOfTheModel) {
   WriteTile(folder_ / "a.tif", 0, 0);
   ExpectSameGrid(ReadElevationExtent(folder_ / "a.tif"),
                  ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid);
 }
 
-TEST(LandSourceRange, TheExtentOfTheRangeIsThatOfTheRange) {
+TEST(LandSourceRange, ExtentEqualsThatOfTheMountains) {
   for (const double latitude_deg : {46.5, 89.8, -89.9}) {
     SCOPED_TRACE(latitude_deg);
     const Place centre{latitude_deg, 8.0, 0.0};
@@ -126,7 +126,7 @@ TEST_F(LandSourceFiles, FourCoarseTilesMeetBesideAFineOne) {
   ExpectHills(heights, 9.0, 10.96, 49.05, 51.0, 123.0 + 86.0);
 }
 
-TEST_F(LandSourceFiles, ATileThatIsMissingIsStillAHole) {
+TEST_F(LandSourceFiles, AMissingTileRemainsAHole) {
   WriteOpenTile(folder_ / "west.tif", 9, 50, 40, 60);
   WriteOpenTile(folder_ / "far.tif", 11, 50, 60, 60);
   const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
@@ -228,7 +228,7 @@ TEST_F(LandSourceFiles, ALevelIsTheBinomialMeanOfTheFinerOne) {
   }
 }
 
-TEST(LandHeightPyramid, WhatIsFinerThanItHasLiesBetweenItsSamples) {
+TEST(LandHeightPyramid, FinerHeightsAreInterpolated) {
   std::vector<float> heights;
   for (int row = 0; row < kTileSamples; row += 4)
     for (int column = 0; column < kTileSamples; column += 4)
@@ -240,7 +240,7 @@ TEST(LandHeightPyramid, WhatIsFinerThanItHasLiesBetweenItsSamples) {
   EXPECT_FLOAT_EQ(coarse.At(0, 8, 14), 0.5F * HeightOfSample(8, 12) + 0.5F * HeightOfSample(8, 16));
 }
 
-TEST_F(LandSourceFiles, TilesOfTwoSpacingsMeetOnTheFinerOnesLattice) {
+TEST_F(LandSourceFiles, TilesOfTwoSpacingsMeetOnTheFinerLattice) {
   WriteTile(folder_ / "a_fine.tif", 0, 0);
   WriteTile(folder_ / "b_coarse.tif", 240, 0, 61, 4);  // every fourth sample
   const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
@@ -256,7 +256,7 @@ TEST_F(LandSourceFiles, TilesOfTwoSpacingsMeetOnTheFinerOnesLattice) {
                   0.5F * HeightOfSample(240, 100) + 0.5F * HeightOfSample(244, 100));
 }
 
-TEST_F(LandSourceFiles, TheGroundUnderAPlaceIsWhereTheRenderersRayMeetsIt) {
+TEST_F(LandSourceFiles, GroundUnderAPlaceIsWhereRaysMeetIt) {
   WriteTile(folder_ / "a.tif", 0, 0);
   const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
   const Place middle = PlaceOfSample(120.0, 120.0, 0.0);
@@ -376,7 +376,7 @@ TEST_P(PolarLand, TheGroundUnderAnEyeIsContinuousOverThePole) {
   }
 }
 
-TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
+TEST_F(LandSourceFiles, UnreadableFilesAreNamed) {
   const auto fault = [](const LandSource& source) {
     return FaultOf([&] { return LandTiles(source); });
   };
@@ -395,7 +395,7 @@ TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
   EXPECT_THAT(tiles.notes()[0], HasSubstr("broken.tif"));
 }
 
-TEST_F(LandSourceFiles, ASceneReadsAllModelsThatMayBeInSight) {
+TEST_F(LandSourceFiles, AllModelsThatMayBeInSightAreRead) {
   WriteTiles(2);
   SceneOptions options;
   for (const char* name : {"tile00.tif", "tile01.tif", "tile10.tif", "tile11.tif"})

@@ -45,7 +45,7 @@ glm::dvec3 PlaceOf(const SunShadowMap& map, int column, int line) {
          (map.first_v_m + map.cell_m * line) * map.across;
 }
 
-TEST(SunShadowMap, HasNoSideThatIsAPowerOfTwoWhileTheSunTurns) {
+TEST(SunShadowMap, SidesAreNeverPowersOfTwo) {
   const auto wall = [](double x, double) { return std::abs(x) < 60.0 ? 800.0 : 0.0; };
   const HeightRaster heights = Raster(wall, 65, 50.0);
   for (double azimuth_deg = 0.0; azimuth_deg < 90.0; azimuth_deg += 1.0) {
@@ -112,7 +112,7 @@ TEST(SunShadowMap, IsTheHighestBeamThatRoughLandCutsOff) {
   }
 }
 
-TEST(SunShadowMap, OfGentleLandUnderAHighSunIsNone) {
+TEST(SunShadowMap, IsEmptyOverGentleLandUnderAHighSun) {
   const auto hills = [](double x, double y) {
     return 100.0 * (1.0 + std::cos(1e-3 * x)) * std::exp(-5e-8 * (x * x + y * y));
   };
@@ -129,7 +129,7 @@ TEST(SunShadowMap, OfGentleLandUnderAHighSunIsNone) {
   }
 }
 
-TEST(SunShadowMap, ItsBoxHoldsAllShade) {
+TEST(SunShadowMap, BoxContainsAllShadows) {
   const auto hill = [](double x, double y) { return 900.0 * std::exp(-1e-7 * (x * x + y * y)); };
   const SunShadowMap map =
       SunShadowMapOf(Raster(hill, 301, 100.0), SunAtDegrees(6.0, 200.0), 0.0046, 512);
@@ -149,7 +149,7 @@ TEST(SunShadowMap, ItsBoxHoldsAllShade) {
   EXPECT_LT(map.high_v_m - map.low_v_m, 14e3) << "the flat land beside the hill is not in it";
 }
 
-TEST(HeightsAround, AreThoseOfTheMeshOfTheSameElevations) {
+TEST(HeightsAround, EqualTheMeshOfTheSameElevations) {
   ElevationGrid grid;
   const Place place{46.5, 8.0, 0.0};
   grid.step_lon_rad = 0.002 * kRadiansPerDegree;

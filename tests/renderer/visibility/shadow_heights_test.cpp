@@ -157,7 +157,7 @@ TEST(ShadowHeights, HalfShadeIsAsWideAsTheDisk) {
   EXPECT_NEAR(SunlightAt(path, 9000.0 - 600.0 / std::tan(elevation)), 0.5, 0.01);
 }
 
-TEST(ShadowHeights, PlacesNeedNoDataOfRays) {
+TEST(ShadowHeights, LookUpsAtPlacesNeedNoDataForRays) {
   const glm::dvec3 sun = EasternSun(10.0);
   const ShadowHeights rays(Ridge(), sun, 0.0047);
   const ShadowHeights places(Ridge(), sun, 0.0047, {.for_rays = false});
@@ -295,7 +295,7 @@ TEST(SunProbes, OverhangsAreNotASingleSurface) {
   EXPECT_FALSE(IsOneSurface(Terrain(wall)));
 }
 
-TEST(SunProbes, OverOneSurfaceTheyAgreeWithShadowHeights) {
+TEST(SunProbes, AgreeWithShadowHeightsOverOneSurface) {
   const Terrain terrain(Ridge());
   const glm::dvec3 to_sun = EasternSun(8.0);
   const SunProbes probes(terrain, to_sun, kSunRadius, 64);

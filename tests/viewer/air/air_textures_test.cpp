@@ -95,7 +95,7 @@ std::vector<tests::Arguments<float>> ArgumentsOf(const BothTables& both,
 
 // --- what the driver reads ---
 
-TEST_F(AirTexturesOnGpu, BlockLiesWhereTheDriverLooks) {
+TEST_F(AirTexturesOnGpu, UniformBlockHasTheOffsetsOfTheDriver) {
   std::vector<ShaderPiece> pieces = SharedTexts();
   for (ShaderPiece& piece : AirTableTexts()) pieces.push_back(std::move(piece));
   pieces.push_back({"main", "void main() { gl_Position = SkyRadiance(vec3(1.0)); }\n"});
@@ -174,21 +174,21 @@ void ExpectWaysOfCpu(double altitude_m, double mu_s, double tolerance) {
   }
 }
 
-TEST_F(AirTexturesOnGpu, SkyIsThatOfTheProcessor) {
+TEST_F(AirTexturesOnGpu, SkyEqualsThatOnTheCpu) {
   ExpectSkyOfCpu(0.0, 0.5, 2e-3);
   ExpectSkyOfCpu(1500.0, 0.02, 2e-3);
   ExpectSkyOfCpu(9000.0, -0.08, 2e-3);
   ExpectSkyOfCpu(400e3, 0.4, 2e-3);
 }
 
-TEST_F(AirTexturesOnGpu, WaysAreThoseOfTheProcessor) {
+TEST_F(AirTexturesOnGpu, AirToPointsEqualsThatOnTheCpu) {
   ExpectWaysOfCpu(2.0, 0.5, 2e-3);
   ExpectWaysOfCpu(1500.0, 0.02, 2e-3);
   ExpectWaysOfCpu(9000.0, -0.08, 2e-3);
   ExpectWaysOfCpu(400e3, 0.4, 2e-3);
 }
 
-TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSun) {
+TEST_F(AirTexturesOnGpu, AMovedEyeUsesItsOwnHorizonAndSun) {
   BothTables both(1500.0, 0.1);
   const EyeUnderLight moved = EyeUnderSouthWest(1600.0, 0.08);
   both.textures.SetView(moved.altitude_m, moved.light);
@@ -225,7 +225,7 @@ std::vector<tests::Arguments<float>> PlacesUnderTheSun(double radius_km) {
   return points;
 }
 
-TEST_F(AirTexturesOnGpu, TransmittanceToTheSunIsThatOfTheIntegrator) {
+TEST_F(AirTexturesOnGpu, TransmittanceToTheSunEqualsThatOfTheIntegrator) {
   const BothTables both(0.0, 0.5);
   const auto points = PlacesUnderTheSun(both.tables.map.radius);
   const auto on_gpu = both.OnGpu("TransmittanceToSun(a[0], a[1]).y", points);
@@ -236,7 +236,7 @@ TEST_F(AirTexturesOnGpu, TransmittanceToTheSunIsThatOfTheIntegrator) {
   }
 }
 
-TEST_F(AirTexturesOnGpu, BeamOfTheSunIsThatOfRefractedBeam) {
+TEST_F(AirTexturesOnGpu, BeamOfTheSunEqualsThatOfRefractedBeam) {
   const BothTables both(0.0, 0.5);
   const auto points = PlacesUnderTheSun(both.tables.map.radius);
   const auto on_gpu = both.OnGpu("BeamOfSun(a[0], a[1]).y", points);

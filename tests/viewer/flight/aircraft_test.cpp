@@ -40,7 +40,7 @@ struct Flown {
 
 double Degrees(double radians) { return radians / kRadiansPerDegree; }
 
-TEST(Aircraft, HandsOffItFliesStraightAndLevelForTenMinutes) {
+TEST(Aircraft, WithoutInputFliesStraightAndLevelForTenMinutes) {
   for (const AircraftKind& kind : {kLightAircraft, kSmallJet}) {
     Flown flown(1000.0, kind, 1.0);
     flown.Fly(600.0);
@@ -52,7 +52,7 @@ TEST(Aircraft, HandsOffItFliesStraightAndLevelForTenMinutes) {
   }
 }
 
-TEST(Aircraft, ItsPathBendsWithTheEarth) {
+TEST(Aircraft, LevelFlightFollowsTheCurvatureOfTheEarth) {
   // Eastwards from 46 N along a great circle: the sine rule says how far south it comes.
   Flown flown(3000.0, kSmallJet, 0.5 * kPi);
   const Place start = flown.Here();
@@ -67,7 +67,7 @@ TEST(Aircraft, ItsPathBendsWithTheEarth) {
 }
 
 // Hard case 27.
-TEST(Aircraft, OverThePoleAndTheDateLineItFliesStraightOn) {
+TEST(Aircraft, FliesStraightOverThePoleAndTheDateLine) {
   Flown flown(1000.0);
   flown.state = LevelFlight(kLightAircraft, kWgs84, Place{89.99, 20.0, 1000.0}, 0.0);
   flown.Fly(60.0);
@@ -85,7 +85,7 @@ TEST(Aircraft, OverThePoleAndTheDateLineItFliesStraightOn) {
   EXPECT_NEAR(flown.Here().height_m, 1000.0, 1.0);
 }
 
-TEST(Aircraft, ATurnHasTheRadiusOfSpeedSquaredOverGTangentOfBank) {
+TEST(Aircraft, RadiusOfATurnFollowsFromSpeedAndBank) {
   Flown flown;
   while (flown.Read().bank_rad < 30.0 * kRadiansPerDegree) flown.Fly(kStep_s, {.roll_right = 0.5});
   flown.Fly(5.0);
@@ -103,7 +103,7 @@ TEST(Aircraft, ATurnHasTheRadiusOfSpeedSquaredOverGTangentOfBank) {
   EXPECT_NEAR(flown.Here().height_m, 1000.0, 15.0) << "and the height is kept";
 }
 
-TEST(Aircraft, BankIsHeldAfterTheStickIsLetGoLevelledWhenSmallAndLimitedWhenLarge) {
+TEST(Aircraft, ReleasedStickKeepsBankLevelsSmallAndLimitsLargeBank) {
   Flown small;
   small.Fly(0.2, {.roll_right = 0.2});
   small.Fly(6.0);
@@ -115,7 +115,7 @@ TEST(Aircraft, BankIsHeldAfterTheStickIsLetGoLevelledWhenSmallAndLimitedWhenLarg
   EXPECT_NEAR(Degrees(steep.Read().bank_rad), -45.0, 1.0);
 }
 
-TEST(Aircraft, StalledWingsCarryTheWeightAtTheStallSpeedAndNotBelow) {
+TEST(Aircraft, WingsCarryTheWeightDownToTheStallSpeed) {
   const double stall = StallSpeed(kLightAircraft, 1000.0);
   const double q = 0.5 * StandardAirAt(1000.0).density_kg_per_m3 * stall * stall;
   EXPECT_NEAR(q * kLightAircraft.wing_area_m2 * kLightAircraft.most_lift,
@@ -132,7 +132,7 @@ TEST(Aircraft, StalledWingsCarryTheWeightAtTheStallSpeedAndNotBelow) {
   EXPECT_LT(flown.Here().height_m, 1000.0);
 }
 
-TEST(Aircraft, WithoutPowerAndHandsItSettlesInAGlideAtTheAngleOfDragOverLift) {
+TEST(Aircraft, WithoutPowerGlidesAtTheAngleOfDragOverLift) {
   Flown flown(3000.0);
   flown.state.throttle = 0.0;
   flown.Fly(180.0);
@@ -149,7 +149,7 @@ TEST(Aircraft, WithoutPowerAndHandsItSettlesInAGlideAtTheAngleOfDragOverLift) {
   EXPECT_LT(1.0 / std::tan(-glide.path_rad), 12.3);
 }
 
-TEST(Aircraft, ClimbsAsFastAsTheSpareThrustSays) {
+TEST(Aircraft, ClimbRateFollowsFromExcessThrust) {
   Flown flown(500.0);
   flown.Fly(2.0, {.throttle_up = 1.0});
   flown.state.held_path_rad = 3.0 * kRadiansPerDegree;
@@ -168,7 +168,7 @@ TEST(Aircraft, ClimbsAsFastAsTheSpareThrustSays) {
   EXPECT_NEAR(Degrees(climb.path_rad), 3.0, 0.1);
 }
 
-TEST(Aircraft, AClimbTooSteepForItsEngineIsForgottenWithoutHunting) {
+TEST(Aircraft, LeavesAClimbTooSteepForTheEngineWithoutOscillating) {
   for (const double pull_s : {0.5, 1.0, 2.0, 4.0}) {
     Flown flown(1500.0);
     flown.Fly(pull_s, {.pitch_up = 1.0, .throttle_up = 1.0});
@@ -187,7 +187,7 @@ TEST(Aircraft, AClimbTooSteepForItsEngineIsForgottenWithoutHunting) {
   }
 }
 
-TEST(Aircraft, EnergyWithoutDragAndThrustIsKeptThroughDivesAndTurns) {
+TEST(Aircraft, EnergyIsConservedWithoutDragAndThrust) {
   Flown flown(4000.0);
   flown.kind.zero_lift_drag = 0.0;
   flown.kind.induced_drag = 0.0;
@@ -205,7 +205,7 @@ TEST(Aircraft, EnergyWithoutDragAndThrustIsKeptThroughDivesAndTurns) {
       << "lift does no work: midpoint steps of 1/120 s, g of the osculating sphere";
 }
 
-TEST(Aircraft, ThinAirTakesPowerAndTheCeilingIsThere) {
+TEST(Aircraft, PowerFallsInThinAirAndLimitsTheHeight) {
   Flown low(500.0), high(7500.0);
   for (Flown* flown : {&low, &high}) {
     flown->state.throttle = 1.0;
@@ -217,7 +217,7 @@ TEST(Aircraft, ThinAirTakesPowerAndTheCeilingIsThere) {
   EXPECT_FALSE(high.Read().stalled);
 }
 
-TEST(Aircraft, LoadsStayWithinTheLimitsHoweverTheStickIsPulled) {
+TEST(Aircraft, LoadFactorStaysWithinItsLimitsForAnyStick) {
   for (const double pull : {1.0, -1.0}) {
     Flown flown(3000.0);
     flown.state.velocity.xyz *= 1.5;
@@ -229,7 +229,7 @@ TEST(Aircraft, LoadsStayWithinTheLimitsHoweverTheStickIsPulled) {
   }
 }
 
-TEST(Aircraft, ALoopIsFlownThroughTheVertical) {
+TEST(Aircraft, CanFlyALoop) {
   Flown flown(1000.0);
   flown.state.velocity.xyz *= 1.5;
   bool was_inverted = false;
@@ -246,7 +246,7 @@ TEST(Aircraft, ALoopIsFlownThroughTheVertical) {
   EXPECT_NEAR(Degrees(flown.Read().heading_rad), 0.0, 2.0);
 }
 
-TEST(Aircraft, RudderTurnsALittleWithoutBank) {
+TEST(Aircraft, RudderTurnsSlightlyWithoutBank) {
   Flown flown;
   flown.Fly(10.0, {.yaw_right = 1.0});
   EXPECT_GT(Degrees(flown.Read().heading_rad), 3.0);
@@ -254,7 +254,7 @@ TEST(Aircraft, RudderTurnsALittleWithoutBank) {
   EXPECT_NEAR(Degrees(flown.Read().bank_rad), 0.0, 1.0);
 }
 
-TEST(Aircraft, LandsSoftlyRollsAndStandsWithBrakes) {
+TEST(Aircraft, LandsRollsAndStopsWithBrakes) {
   Flown flown(30.0);
   flown.ground = SeaLevel;
   flown.state.throttle = 0.13;  // a path of 3 degrees at 1.3 times the stall speed
@@ -285,7 +285,7 @@ TEST(Aircraft, TakesOffAgainWithFullThrottle) {
   EXPECT_GT(flown.Here().height_m, 20.0);
 }
 
-TEST(Aircraft, AMountainStopsItAndItIsNeverInTheGround) {
+TEST(Aircraft, IsStoppedByAMountainAndNeverEntersTheGround) {
   // A wall of 45 degrees to the north of the start.
   const double foot = 46.02 * kRadiansPerDegree;
   const GroundHeight wall = [&](const Place& place) {
@@ -305,7 +305,7 @@ TEST(Aircraft, AMountainStopsItAndItIsNeverInTheGround) {
   }
 }
 
-TEST(Aircraft, DropsFromRestOutOfThinAirAndFliesWhereItIsThick) {
+TEST(Aircraft, FallsInThinAirUntilTheAirCarriesIt) {
   Flown flown(18000.0, kSmallJet);
   flown.state.velocity.xyz *= 0.01;
   flown.Fly(240.0);
@@ -314,7 +314,7 @@ TEST(Aircraft, DropsFromRestOutOfThinAirAndFliesWhereItIsThick) {
   EXPECT_NEAR(flown.Read().load, 1.0, 0.5);
 }
 
-TEST(Aircraft, TheEyeLooksAlongTheNoseWithTheWingsOfTheAircraft) {
+TEST(Aircraft, ViewFollowsNoseAndBank) {
   Flown flown(1000.0, kLightAircraft, 1.2);
   CameraPose eye = EyeIn(flown.state, flown.kind, kWgs84, 0.0, 0.0, 1.0);
   EXPECT_NEAR(eye.heading_rad, 1.2, 1e-9);
@@ -361,7 +361,7 @@ double Apart(double heading_rad, double other_rad) {
   return std::remainder(heading_rad - other_rad, 2.0 * kPi);
 }
 
-TEST(Autopilot, ANewHeadingIsReachedTheShortWayWithoutOvershootBeyondTwoDegrees) {
+TEST(Autopilot, TurnsTheShortWayAndOvershootsByAtMostTwoDegrees) {
   for (const AircraftKind& kind : {kLightAircraft, kSmallJet}) {
     for (const double target :
          {90.0 * kRadiansPerDegree, -135.0 * kRadiansPerDegree, 10.0 * kRadiansPerDegree}) {
@@ -382,7 +382,7 @@ TEST(Autopilot, ANewHeadingIsReachedTheShortWayWithoutOvershootBeyondTwoDegrees)
   }
 }
 
-TEST(Autopilot, ANewHeightIsReachedWithoutOvershootBeyondFiveMetres) {
+TEST(Autopilot, ReachesAHeightWithAtMostFiveMetresOfOvershoot) {
   for (const AircraftKind& kind : {kLightAircraft, kSmallJet}) {
     for (const double change_m : {300.0, -300.0, 30.0}) {
       Held held(kind, 1000.0);
@@ -399,7 +399,7 @@ TEST(Autopilot, ANewHeightIsReachedWithoutOvershootBeyondFiveMetres) {
   }
 }
 
-TEST(Autopilot, ANewSpeedIsReachedWithoutOvershootBeyondAMetreASecond) {
+TEST(Autopilot, ReachesASpeedWithAtMostOneMetrePerSecondOfOvershoot) {
   for (const AircraftKind& kind : {kLightAircraft, kSmallJet}) {
     for (const double factor : {0.8, 0.95}) {
       Held held(kind, 1000.0);
@@ -414,14 +414,14 @@ TEST(Autopilot, ANewSpeedIsReachedWithoutOvershootBeyondAMetreASecond) {
   }
 }
 
-TEST(Autopilot, AClimbIsHeld) {
+TEST(Autopilot, HoldsAClimb) {
   Held held(kSmallJet, 1000.0);
   held.autopilot.Set({.climb_m_per_s = 5.0, .speed_m_per_s = held.Read().speed_m_per_s});
   held.Fly(60.0, [](double) {});
   EXPECT_NEAR(held.Read().vertical_speed_m_per_s, 5.0, 0.1);
 }
 
-TEST(Autopilot, EngagedInATurnItJerksNothing) {
+TEST(Autopilot, EngagesInATurnWithoutAJerk) {
   Held held(kLightAircraft, 1500.0);
   for (int i = 0; i < 120; ++i) held.Step({.roll_right = 0.5});
   held.autopilot.Toggle(Autopilot::Hold::kHeading, held.Read(), held.Height());
@@ -438,7 +438,7 @@ TEST(Autopilot, EngagedInATurnItJerksNothing) {
   });
 }
 
-TEST(Autopilot, HandsMoveWhatIsHeld) {
+TEST(Autopilot, ControlsChangeTheHeldValues) {
   Held held(kLightAircraft, 1500.0);
   held.autopilot.Set({.heading_rad = 0.0, .height_m = 1500.0, .speed_m_per_s = 50.0});
   for (int i = 0; i < 120; ++i)
@@ -450,7 +450,7 @@ TEST(Autopilot, HandsMoveWhatIsHeld) {
       << "the stick itself flies nothing";
 }
 
-TEST(Autopilot, WhatCannotBeTogetherReplacesEachOther) {
+TEST(Autopilot, ExclusiveHoldsReplaceEachOther) {
   Held held(kLightAircraft, 1500.0);
   const auto toggle = [&](Autopilot::Hold hold) {
     held.autopilot.Toggle(hold, held.Read(), held.Height());
@@ -468,7 +468,7 @@ TEST(Autopilot, WhatCannotBeTogetherReplacesEachOther) {
   EXPECT_EQ(TextOf({.heading_rad = -0.5 * kPi, .speed_m_per_s = 61.2}), "HDG 270 SPD 61 m/s");
 }
 
-TEST(Autopilot, AHeightThatCannotBeReachedIsNoStall) {
+TEST(Autopilot, DoesNotStallForAnUnreachableHeight) {
   Held held(kLightAircraft, 5000.0);
   held.autopilot.Set({.height_m = 9000.0});
   held.Fly(600.0, [](double) {});

@@ -32,7 +32,7 @@ CameraPose EyeAt(double latitude, double longitude, double height_m, double head
           pitch_deg * kRadiansPerDegree};
 }
 
-TEST(Flight, TheViewLooksWhereHeadingAndPitchSay) {
+TEST(Flight, ViewDirectionFollowsFromHeadingAndPitch) {
   const ViewAxes north = AxesOf(EyeAt(46.0, 8.0, 0.0));
   EXPECT_NEAR(glm::length(north.forward - glm::dvec3(0.0, 1.0, 0.0)), 0.0, 1e-15);
   EXPECT_NEAR(glm::length(north.right - glm::dvec3(1.0, 0.0, 0.0)), 0.0, 1e-15);
@@ -42,7 +42,7 @@ TEST(Flight, TheViewLooksWhereHeadingAndPitchSay) {
   EXPECT_NEAR(glm::dot(east.forward, east.up), 0.0, 1e-15);
 }
 
-TEST(Flight, APlacementChangesWhatItNamesAndRefusesWhatIsOutOfRange) {
+TEST(Flight, PlacementChangesOnlyItsFieldsAndRefusesValuesOutOfRange) {
   const CameraPose eye = EyeAt(46.0, 8.0, 500.0, 10.0, 5.0);
   const CameraPose north = Placed(eye, {.latitude_deg = 47.0, .heading_deg = 90.0});
   EXPECT_NEAR(north.place.latitude_rad(), 47.0 * kRadiansPerDegree, 1e-15);
@@ -56,14 +56,14 @@ TEST(Flight, APlacementChangesWhatItNamesAndRefusesWhatIsOutOfRange) {
   EXPECT_THROW(static_cast<void>(Placed(eye, {.pitch_deg = 91.0})), InputError);
 }
 
-TEST(Flight, SpeedIsAWalkOnTheGroundAndKilometresASecondInOrbit) {
+TEST(Flight, SpeedOfTheFreeCameraGrowsWithHeight) {
   EXPECT_NEAR(SpeedAt(0.0), 2.0, 1.0);
   EXPECT_GT(SpeedAt(400e3), 10e3);
   EXPECT_LE(SpeedAt(1e9), 200e3);
   for (double h = 1.0; h < 1e6; h *= 2.0) EXPECT_GE(SpeedAt(2.0 * h), SpeedAt(h));
 }
 
-TEST(Flight, AnHourForwardIsTheDistanceOfTheSpeed) {
+TEST(Flight, AnHourForwardCoversSpeedTimesTime) {
   CameraPose eye = EyeAt(46.0, 8.0, 1000.0, 90.0);
   const Point<Ecef> start = EcefFromGeodetic(kWgs84, eye.place);
   for (int i = 0; i < 100; ++i) eye = Steer(eye, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
@@ -71,7 +71,7 @@ TEST(Flight, AnHourForwardIsTheDistanceOfTheSpeed) {
   EXPECT_NEAR(flown, 10.0 * SpeedAt(1000.0), 0.1) << "ten seconds on a path bent by the earth";
 }
 
-TEST(Flight, AcrossTheDateLineAndOverThePoleTheDirectionIsKept) {
+TEST(Flight, DirectionIsKeptAcrossTheDateLineAndOverThePole) {
   CameraPose eye = EyeAt(0.0, 179.999, 1000.0, 90.0);
   for (int i = 0; i < 100; ++i) eye = Steer(eye, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
   EXPECT_LT(eye.place.longitude_rad(), 0.0) << "beyond the date line";
@@ -89,7 +89,7 @@ TEST(Flight, PitchStopsAtTheVertical) {
   EXPECT_TRUE(std::isfinite(AxesOf(up).right.x));
 }
 
-TEST(Flight, ARolledEyeTurnsToWhatItSeesOnItsRight) {
+TEST(Flight, RolledViewTurnsTowardsItsOwnRight) {
   for (const double roll : {0.0, 0.5, -1.2, kPi}) {
     CameraPose eye = EyeAt(46.0, 8.0, 0.0, 30.0);
     eye.roll_rad = roll;
@@ -101,7 +101,7 @@ TEST(Flight, ARolledEyeTurnsToWhatItSeesOnItsRight) {
   }
 }
 
-TEST(Flight, AHeldRollTurnsTheHorizonAndATelescopeTurnsSlowly) {
+TEST(Flight, RollTurnsTheHorizonAndNarrowViewsTurnSlowly) {
   const CameraPose rolled = Steer(EyeAt(46.0, 8.0, 0.0), {.roll_right = 1.0}, kWgs84, 10.0, 1.0);
   EXPECT_NEAR(rolled.roll_rad, 45.0 * kRadiansPerDegree, 1e-12);
   const CameraPose narrow = Zoomed(EyeAt(46.0, 8.0, 0.0), 0.1);
@@ -109,24 +109,24 @@ TEST(Flight, AHeldRollTurnsTheHorizonAndATelescopeTurnsSlowly) {
   EXPECT_NEAR(turned.heading_rad, 4.5 * kRadiansPerDegree, 1e-12) << "in a view of 6 degrees";
 }
 
-TEST(Flight, TheFieldOfViewStaysBetweenOneAndAHundredAndTwentyDegrees) {
+TEST(Flight, FieldOfViewStaysBetween1And120Degrees) {
   EXPECT_NEAR(Zoomed(EyeAt(0.0, 0.0, 0.0), 1e-9).fov_rad, 1.0 * kRadiansPerDegree, 1e-15);
   EXPECT_NEAR(Zoomed(EyeAt(0.0, 0.0, 0.0), 1e9).fov_rad, 120.0 * kRadiansPerDegree, 1e-15);
 }
 
-TEST(Flight, TheEyeStaysOverTheGround) {
+TEST(Flight, EyeStaysAboveTheGround) {
   EXPECT_EQ(KeptAbove(EyeAt(0.0, 0.0, 100.0), 500.0, 2.0).place.height_m, 502.0);
   EXPECT_EQ(KeptAbove(EyeAt(0.0, 0.0, 900.0), 500.0, 2.0).place.height_m, 900.0);
 }
 
-TEST(Flight, ExposureAdaptsHalfWayInAThirdOfASecond) {
+TEST(Flight, ExposureAdaptsByHalfInAThirdOfASecond) {
   EXPECT_EQ(AdaptedEv100(std::nullopt, 12.0, 0.0), 12.0);
   EXPECT_NEAR(AdaptedEv100(10.0, 12.0, 0.3), 11.0, 1e-12);
   EXPECT_EQ(AdaptedEv100(10.0, 12.0, 0.0), 10.0);
   EXPECT_NEAR(AdaptedEv100(10.0, 12.0, 60.0), 12.0, 1e-12);
 }
 
-TEST(Flight, AnEyeAtAPlaceStandsOnTheRunwayAndFliesOverTheCity) {
+TEST(Flight, AtAnAirportTheEyeStandsOnGroundAndAboveACityItFlies) {
   const CameraPose zurich =
       viewer::EyeAt(PlaceNamed("LSZH"), {}, [](const Place&) { return 430.0; });
   EXPECT_EQ(zurich.place.height_m, 432.0) << "over the terrain's runway";
@@ -157,7 +157,7 @@ CameraPose FlownFor(FlightMode mode, const PilotControls& controls, double secon
   return pilot.eye();
 }
 
-TEST(Pilot, AFlightOfTheAircraftIsTheSameAtEveryFrameRate) {
+TEST(Pilot, FlightOfTheAircraftDoesNotDependOnTheFrameRate) {
   const PilotControls controls{.stick = {.pitch_up = 0.1, .roll_right = 0.05, .throttle_up = 0.1}};
   const CameraPose smooth = FlownFor(FlightMode::kAircraft, controls, 12.0, 1.0 / 240.0);
   for (const double frame_s : {1.0 / 60.0, 1.0 / 7.0, 0.75, 4.0, 12.0}) {
@@ -167,7 +167,7 @@ TEST(Pilot, AFlightOfTheAircraftIsTheSameAtEveryFrameRate) {
   }
 }
 
-TEST(Pilot, AFlightOfTheFreeCameraIsWithinAPercentAtEveryFrameRate) {
+TEST(Pilot, FreeCameraDependsOnTheFrameRateByLessThanAPercent) {
   const PilotControls controls{.camera = {.forward = 1.0, .up = 0.5, .turn_right = 0.1}};
   const CameraPose smooth = FlownFor(FlightMode::kFree, controls, 4.0, 1.0 / 240.0);
   const double way = Apart(smooth, EyeAt(1500.0));
@@ -177,7 +177,7 @@ TEST(Pilot, AFlightOfTheFreeCameraIsWithinAPercentAtEveryFrameRate) {
   }
 }
 
-TEST(Pilot, TheAircraftMovesSmoothlyBetweenItsSteps) {
+TEST(Pilot, AircraftMovesSmoothlyBetweenSimulationSteps) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
   constexpr double kFrame_s = 1.0 / 500.0;
@@ -189,7 +189,7 @@ TEST(Pilot, TheAircraftMovesSmoothlyBetweenItsSteps) {
   }
 }
 
-TEST(Pilot, TheFreeCameraIsNeverInTheGround) {
+TEST(Pilot, FreeCameraNeverEntersTheGround) {
   const GroundHeight ridge = [](const Place& place) {
     return 1000.0 + 900.0 * std::sin(place.latitude_rad() * 6e4);
   };
@@ -200,7 +200,7 @@ TEST(Pilot, TheFreeCameraIsNeverInTheGround) {
   }
 }
 
-TEST(Pilot, AFreeCameraPutLowStaysLowUntilItClimbs) {
+TEST(Pilot, FreeCameraPlacedLowStaysLowUntilItClimbs) {
   constexpr double kLow_m = 0.4;
   Pilot pilot(EyeAt(kLow_m), kWgs84);
   pilot.KeepAbove(Sea);
@@ -227,7 +227,7 @@ TEST(Pilot, ChangingTheModeKeepsPlaceAndHeading) {
   EXPECT_EQ(pilot.eye().roll_rad, 0.0);
 }
 
-TEST(Pilot, NearTheGroundTheAircraftStandsOnItAndHighUpItIsAJet) {
+TEST(Pilot, AircraftStartsOnTheGroundOrAsAJetHighUp) {
   Pilot low(EyeAt(3.0), kWgs84);
   ASSERT_FALSE(low.Enter(FlightMode::kAircraft, Sea));
   EXPECT_EQ(low.Readout(Sea).aircraft->contact, GroundContact::kStanding);
@@ -241,7 +241,7 @@ TEST(Pilot, NearTheGroundTheAircraftStandsOnItAndHighUpItIsAJet) {
   EXPECT_EQ(space.Enter(FlightMode::kTrack, Sea), "there is no track to follow");
 }
 
-TEST(Pilot, LookingAroundTurnsTheHeadAndNotTheAircraft) {
+TEST(Pilot, LookingAroundDoesNotTurnTheAircraft) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
   pilot.Advance({.look_right = 0.5}, 1.0, Sea);
@@ -252,7 +252,7 @@ TEST(Pilot, LookingAroundTurnsTheHeadAndNotTheAircraft) {
   EXPECT_NEAR(pilot.eye().heading_rad, 0.0, 1e-3);
 }
 
-TEST(Pilot, AFlightThatIsFourTimesAsFastGoesFourTimesAsFar) {
+TEST(Pilot, FourfoldFlightSpeedCoversFourTimesTheDistance) {
   Pilot once(EyeAt(1500.0), kWgs84), four(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(once.Enter(FlightMode::kAircraft, Sea));
   ASSERT_FALSE(four.Enter(FlightMode::kAircraft, Sea));
@@ -267,7 +267,7 @@ TEST(Pilot, AFlightThatIsFourTimesAsFastGoesFourTimesAsFar) {
   EXPECT_EQ(four.time_factor(), 1.0);
 }
 
-TEST(Pilot, AThousandFeetHigherItFliesOnEvenFromTheGround) {
+TEST(Pilot, JumpOfAThousandFeetKeepsFlyingEvenFromTheGround) {
   Pilot pilot(EyeAt(2.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
   pilot.Lift(304.8, Sea);
@@ -282,7 +282,7 @@ std::shared_ptr<const CameraPath> TwoPoints() {
       {100.0, {Place{46.1, 8.0, 2000.0}}, ParseInstant("2026-06-21T04:01:40Z")}});
 }
 
-TEST(Pilot, ATrackIsFollowedToItsEndAndKeepsTheFieldOfView) {
+TEST(Pilot, FollowsATrackToItsEndAndKeepsTheFieldOfView) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   pilot.SetTrack(TwoPoints());
   ASSERT_FALSE(pilot.Enter(FlightMode::kTrack, Sea));
@@ -301,7 +301,7 @@ TEST(Pilot, ATrackIsFollowedToItsEndAndKeepsTheFieldOfView) {
   EXPECT_EQ(pilot.mode(), FlightMode::kFree);
 }
 
-TEST(Pilot, AReplayIsSeenThroughItsOwnLens) {
+TEST(Pilot, ReplayHasTheRecordedFieldOfView) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   CameraPose narrow{Place{46.0, 8.0, 1000.0}};
   narrow.fov_rad = 0.3;
@@ -311,7 +311,7 @@ TEST(Pilot, AReplayIsSeenThroughItsOwnLens) {
   EXPECT_EQ(pilot.eye().fov_rad, 0.3);
 }
 
-TEST(Pilot, WhereTerrainIsLoadedOverTheAircraftItFliesOnOverIt) {
+TEST(Pilot, AircraftIsLiftedWhenTerrainIsLoadedAboveIt) {
   double ground_m = 0.0;
   const GroundHeight ground = [&](const Place&) { return ground_m; };
   Pilot pilot(EyeAt(800.0), kWgs84);
@@ -322,7 +322,7 @@ TEST(Pilot, WhereTerrainIsLoadedOverTheAircraftItFliesOnOverIt) {
   EXPECT_EQ(pilot.Readout(ground).aircraft->contact, GroundContact::kNone);
 }
 
-TEST(Pilot, PutSomewhereElseItFliesOnThere) {
+TEST(Pilot, AircraftFliesOnAfterBeingPlacedElsewhere) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
   CameraPose there = EyeAt(2500.0, 90.0);
@@ -337,7 +337,7 @@ TEST(Pilot, PutSomewhereElseItFliesOnThere) {
   EXPECT_EQ(pilot.mode(), FlightMode::kFree) << "there is no air";
 }
 
-TEST(Pilot, AReplayGoesAsLowAsItWasFlownButNotIntoTheGround) {
+TEST(Pilot, ReplayFliesAsLowAsRecordedButNotIntoTheGround) {
   const auto shown_m = [](double flown_m) {
     Pilot pilot(EyeAt(1500.0), kWgs84);
     const CameraPose low{CheckedPlace({46.0, 8.0, flown_m})};
@@ -358,7 +358,7 @@ const Place kZurich{47.4582, 8.5555, 432.0};
 SceneClock ClockAt(const char* utc) { return SceneClock(ParseInstant(utc)); }
 std::string Shows(const SceneClock& clock) { return FormatUtc(clock.now()); }
 
-TEST(Clock, RatesStepThroughRealTimeAndStandstill) {
+TEST(Clock, RatesStepThroughRealTimeAndPause) {
   EXPECT_EQ(SteppedTimeRate(1.0, 1), 10.0);
   EXPECT_EQ(SteppedTimeRate(1.0, -1), 0.0);
   EXPECT_EQ(SteppedTimeRate(0.0, -1), -1.0);
@@ -366,7 +366,7 @@ TEST(Clock, RatesStepThroughRealTimeAndStandstill) {
   EXPECT_EQ(SteppedTimeRate(-3600.0, -1), -3600.0);
 }
 
-TEST(Clock, AFrameOfASecondShowsAsMuchAsSixtyOfASixtieth) {
+TEST(Clock, AdvanceDoesNotDependOnTheFrameRate) {
   SceneClock slow = ClockAt("2026-06-21T04:00:00Z");
   SceneClock fast = slow;
   slow.SetRate(60.0);
@@ -377,7 +377,7 @@ TEST(Clock, AFrameOfASecondShowsAsMuchAsSixtyOfASixtieth) {
   EXPECT_NEAR(SecondsBetween(slow.now(), fast.now()), 0.0, 1e-9) << "rounding of 60 sums";
 }
 
-TEST(Clock, PausedItStandsAndItsHandsCanBeMoved) {
+TEST(Clock, TimeCanBeSetWhilePaused) {
   SceneClock clock = ClockAt("2026-06-21T04:00:00Z");
   clock.SetRate(600.0);
   clock.Pause(true);
@@ -391,7 +391,7 @@ TEST(Clock, PausedItStandsAndItsHandsCanBeMoved) {
   EXPECT_EQ(Shows(clock), "2026-06-21T04:09:00Z");
 }
 
-TEST(Clock, BackwardsItRunsAsFastAsForwards) {
+TEST(Clock, RunsBackwardsAsFastAsForwards) {
   SceneClock clock = ClockAt("2026-01-01T00:00:10Z");
   clock.SetRate(-3600.0);
   clock.Advance(1.0);
@@ -401,7 +401,7 @@ TEST(Clock, BackwardsItRunsAsFastAsForwards) {
 }
 
 // Hard case 25.
-TEST(Clock, OverALeapSecondItCountsAsClocksDo) {
+TEST(Clock, IgnoresLeapSecondsAsClocksDo) {
   SceneClock clock = ClockAt("2016-12-31T23:59:50Z");
   for (int i = 0; i < 20; ++i) clock.Advance(1.0);
   EXPECT_EQ(Shows(clock), "2017-01-01T00:00:10Z");
@@ -410,7 +410,7 @@ TEST(Clock, OverALeapSecondItCountsAsClocksDo) {
   EXPECT_EQ(Shows(clock), "2016-12-31T23:59:10Z");
 }
 
-TEST(Clock, StopsAtTheEndsOfTheYearsThatItKnows) {
+TEST(Clock, StopsAtTheFirstAndLastKnownYear) {
   SceneClock clock = ClockAt("2100-12-31T23:00:00Z");
   clock.Shift(1e7);
   EXPECT_EQ(Shows(clock), "2100-12-31T23:59:59Z");
@@ -418,7 +418,7 @@ TEST(Clock, StopsAtTheEndsOfTheYearsThatItKnows) {
   EXPECT_EQ(Shows(clock), "1900-01-01T00:00:00Z");
 }
 
-TEST(Clock, JumpsToTheNextSunriseAndNeverToTheSameAgain) {
+TEST(Clock, JumpsToTheNextSunriseAndNotToTheSameAgain) {
   SceneClock clock = ClockAt("2026-06-21T12:00:00Z");
   for (int day = 22; day < 25; ++day) {
     ASSERT_TRUE(clock.JumpToNext(SkyEvent::kSunrise, kZurich));
@@ -429,7 +429,7 @@ TEST(Clock, JumpsToTheNextSunriseAndNeverToTheSameAgain) {
   }
 }
 
-TEST(Clock, TheEventsOfADayComeInTheirOrder) {
+TEST(Clock, EventsOfADayFollowInOrder) {
   SceneClock clock = ClockAt("2026-03-20T00:00:00Z");
   UtcTime before = clock.now();
   for (const SkyEvent event :
@@ -442,7 +442,7 @@ TEST(Clock, TheEventsOfADayComeInTheirOrder) {
   }
 }
 
-TEST(Clock, InThePolarNightTheNextSunriseIsWeeksAwayAndAtThePoleMonths) {
+TEST(Clock, FindsTheNextSunriseAfterAPolarNight) {
   SceneClock clock = ClockAt("2026-12-01T12:00:00Z");
   const Place tromso{69.6492, 18.9553, 0.0};
   ASSERT_TRUE(clock.JumpToNext(SkyEvent::kSunrise, tromso));
@@ -450,7 +450,7 @@ TEST(Clock, InThePolarNightTheNextSunriseIsWeeksAwayAndAtThePoleMonths) {
   EXPECT_EQ(Shows(clock).substr(0, 8), "2027-01-");
 }
 
-TEST(Clock, NoDayIsPassedOverOnTheWayToTheNextEvent) {
+TEST(Clock, SearchForAnEventSkipsNoDay) {
   struct Case {
     double latitude, height_m;
     const char* start;
@@ -473,7 +473,7 @@ TEST(Clock, NoDayIsPassedOverOnTheWayToTheNextEvent) {
   }
 }
 
-TEST(Clock, EventsOfTheMoonAreThoseOfItsEphemeris) {
+TEST(Clock, EventsOfTheMoonAgreeWithTheEphemeris) {
   SceneClock clock = ClockAt("2026-06-21T12:00:00Z");
   for (const auto& [event, next] : {std::pair{SkyEvent::kMoonset, &NextMoonset},
                                     std::pair{SkyEvent::kMoonrise, &NextMoonrise}}) {
@@ -483,7 +483,7 @@ TEST(Clock, EventsOfTheMoonAreThoseOfItsEphemeris) {
   }
 }
 
-TEST(Clock, TypedTimesAreUtcWithAZAndLocalWithout) {
+TEST(Clock, TypedTimesAreUtcWithZAndLocalWithoutIt) {
   SceneClock clock = ClockAt("2026-06-21T23:30:00Z");
   clock.Type("2026-01-02T03:04:05Z", kZurich, "Europe/Zurich");
   EXPECT_EQ(Shows(clock), "2026-01-02T03:04:05Z");
@@ -515,7 +515,7 @@ void Fly(FlightLog& log, double begin_s, int frames) {
   }
 }
 
-TEST(FlightLog, HasAllOfTheFlightFromItsFirstFrameToItsLast) {
+TEST(FlightLog, CoversTheFlightFromFirstToLastFrame) {
   FlightLog log;
   Fly(log, 5.0, 101);
   const CameraPath path = log.Path();
@@ -527,7 +527,7 @@ TEST(FlightLog, HasAllOfTheFlightFromItsFirstFrameToItsLast) {
   EXPECT_NEAR(SecondsBetween(kStart, *path.UtcAt(1.0)), 360.0, 1e-3);
 }
 
-TEST(FlightLog, ALongFlightTakesNoMorePointsAndIsWholeStill) {
+TEST(FlightLog, LongFlightIsCompleteWithABoundedNumberOfPoints) {
   constexpr std::size_t kMost = 64;
   FlightLog log(kMost);
   Fly(log, 0.0, 6001);
@@ -541,7 +541,7 @@ TEST(FlightLog, ALongFlightTakesNoMorePointsAndIsWholeStill) {
   }
 }
 
-TEST(FlightLog, WhereTheEyeStoodNothingHasBeenFlown) {
+TEST(FlightLog, RecordsNothingWhileTheEyeStands) {
   FlightLog log;
   EXPECT_THROW((void)log.Path(), InputError);
   for (int frame = 0; frame < 100; ++frame)
@@ -569,7 +569,7 @@ class FlightRecords : public TemporaryFolder {
   }
 };
 
-TEST_F(FlightRecords, AFlightIsOnTheDiskWhileItIsFlown) {
+TEST_F(FlightRecords, AreWrittenToDiskDuringTheFlight) {
   FlightRecorder recorder(File());
   Fly(recorder, 61);
   const CameraPath flown = ReadFlight(Part());
@@ -583,7 +583,7 @@ TEST_F(FlightRecords, AFlightIsOnTheDiskWhileItIsFlown) {
       << "a minute of the scene in a second of the pilot";
 }
 
-TEST_F(FlightRecords, ARecorderThatGoesOutOfScopeFinishesItsFile) {
+TEST_F(FlightRecords, DestructorOfTheRecorderFinishesTheFile) {
   {
     FlightRecorder recorder(File());
     Fly(recorder, 10);
@@ -591,14 +591,14 @@ TEST_F(FlightRecords, ARecorderThatGoesOutOfScopeFinishesItsFile) {
   EXPECT_EQ(ReadFlight(File()).points().size(), 4U) << "every third sixtieth of a second";
 }
 
-TEST_F(FlightRecords, WithoutAFileNothingIsWritten) {
+TEST_F(FlightRecords, RecorderWithoutAFileWritesNothing) {
   FlightRecorder recorder;
   Fly(recorder, 10);
   recorder.Finish();
   EXPECT_EQ(FileCount(), 0U);
 }
 
-TEST_F(FlightRecords, OfALineThatWasCutTheLinesBeforeAreFlown) {
+TEST_F(FlightRecords, LinesBeforeATruncatedLineAreReplayed) {
   {
     FlightRecorder recorder(File());
     Fly(recorder, 31);
@@ -615,7 +615,7 @@ TEST_F(FlightRecords, OfALineThatWasCutTheLinesBeforeAreFlown) {
   EXPECT_THROW((void)ReadFlight(File()), InputError);
 }
 
-TEST_F(FlightRecords, AFlightThatIsMissingIsLookedForInItsPart) {
+TEST_F(FlightRecords, AMissingFileIsReadFromItsUnfinishedPart) {
   WriteText(Part(), "t_s,latitude,longitude,height_m,heading\n0,46.5,8,3000,350\n");
   try {
     (void)ReadFlight(File());
@@ -625,7 +625,7 @@ TEST_F(FlightRecords, AFlightThatIsMissingIsLookedForInItsPart) {
   }
 }
 
-TEST_F(FlightRecords, OfADiskThatIsFullTheFlightHearsAtItsEnd) {
+TEST_F(FlightRecords, AFullDiskIsReportedAtTheEndOfTheFlight) {
   const pid_t child = fork();
   if (child == 0) {
     const rlimit limit{1000, 1000};  // bytes of a file

@@ -42,7 +42,7 @@ constexpr const char* kTwoOutputs =
     "  a = vec4(gl_FragCoord.xy, -1e-7, 1e9);\n"
     "  b = vec4(gl_FragCoord.y, 1.0 / 3.0, 65504.0, -2.0); }\n";
 
-TEST_F(RenderTargets, SeveralOutputsOfOneDrawAreReadEachInItsOwnFormat) {
+TEST_F(RenderTargets, OutputsOfOneDrawAreReadInTheirOwnFormats) {
   const RenderTarget target(4, 3, {PixelFormat::kRgba32F, PixelFormat::kRgba16F},
                             RenderTarget::Depth::k32Bit);
   Draw(target, kTwoOutputs);
@@ -55,7 +55,7 @@ TEST_F(RenderTargets, SeveralOutputsOfOneDrawAreReadEachInItsOwnFormat) {
   EXPECT_EQ(target.Read().at(3, 2)[0], 3.5F) << "reading one output leaves the others";
 }
 
-TEST_F(RenderTargets, WhatIsPutThereIsReadBack) {
+TEST_F(RenderTargets, UploadedPixelsAreReadBack) {
   const RenderTarget target(3, 2, RenderTarget::Depth::kNone);
   HdrImage image(3, 2);
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
@@ -66,7 +66,7 @@ TEST_F(RenderTargets, WhatIsPutThereIsReadBack) {
   EXPECT_THROW(target.Write(HdrImage(2, 3)), InternalError);
 }
 
-TEST_F(RenderTargets, BytesAreOfADevelopedPicture) {
+TEST_F(RenderTargets, BytesAreReadFromTheTopRowDown) {
   const RenderTarget target(4, 3);
   Draw(target, "out vec4 a; void main() { a = vec4(gl_FragCoord.y / 4.0, 0.2, 1.0, 0.0); }\n");
   const DisplayImage image = target.ReadBytes();
@@ -75,7 +75,7 @@ TEST_F(RenderTargets, BytesAreOfADevelopedPicture) {
   EXPECT_EQ(image.rgb[1], 51);
 }
 
-TEST_F(RenderTargets, MakingOneLeavesWhatIsBoundToATextureUnit) {
+TEST_F(RenderTargets, ConstructorKeepsBoundTextures) {
   const GlTexture texture;
   glBindTexture(GL_TEXTURE_2D, texture.id());
   const RenderTarget target(3, 2, RenderTarget::Depth::k32Bit);
@@ -109,7 +109,7 @@ class StorageCounter {
   static inline PFNGLTEXIMAGE2DPROC own_ = nullptr;
 };
 
-TEST_F(RenderTargets, ATextureKeepsItsStorageForValuesOfOneSizeAndFormat) {
+TEST_F(RenderTargets, TextureKeepsItsStorageForEqualSizeAndFormat) {
   const GlTexture texture;
   const auto read_after = [&](GLenum format, int width, float value) {
     const std::vector<float> values(static_cast<std::size_t>(2 * width), value);
@@ -128,7 +128,7 @@ TEST_F(RenderTargets, ATextureKeepsItsStorageForValuesOfOneSizeAndFormat) {
   CheckGl("RenderTargets");
 }
 
-TEST_F(RenderTargets, ATargetIsMadeAnewForAnotherSizeAlone) {
+TEST_F(RenderTargets, ATargetIsRecreatedOnlyForAnotherSize) {
   std::optional<RenderTarget> target;
   Fit(target, 3, 2);
   const GLuint first = target->framebuffer();
@@ -138,7 +138,7 @@ TEST_F(RenderTargets, ATargetIsMadeAnewForAnotherSizeAlone) {
   EXPECT_EQ(target->height(), 4);
 }
 
-TEST_F(RenderTargets, APictureWithoutMemoryForItIsADisplayError) {
+TEST_F(RenderTargets, APictureTooLargeForMemoryIsADisplayError) {
   GLint side = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
   glTexImage2D(GL_PROXY_TEXTURE_2D, 0, GL_RGBA32F, side, side, 0, GL_RGBA, GL_FLOAT, nullptr);
@@ -150,7 +150,7 @@ TEST_F(RenderTargets, APictureWithoutMemoryForItIsADisplayError) {
 
 // --- pictures in tiles ---
 
-TEST(PictureTiles, TheyCoverEveryPixelOnceAndNoneIsTooLarge) {
+TEST(PictureTiles, CoverEveryPixelOnceAndAreNotTooLarge) {
   for (const auto& [width, height, side] :
        {std::array{100, 60, 32}, {7, 5, 1}, {64, 64, 64}, {1, 1, 9}, {13, 200, 50}}) {
     std::vector<int> covered(static_cast<std::size_t>(width * height), 0);
@@ -166,7 +166,7 @@ TEST(PictureTiles, TheyCoverEveryPixelOnceAndNoneIsTooLarge) {
   }
 }
 
-TEST(PictureTiles, TheyAreCutWhereTheStepsOfThePictureAre) {
+TEST(PictureTiles, BeginAtMultiplesOfTheStep) {
   const int width = 1000, height = 700;
   TiledPicture picture(width, height, 500);
   int with_rims = 0;
@@ -185,7 +185,7 @@ TEST(PictureTiles, TheyAreCutWhereTheStepsOfThePictureAre) {
   EXPECT_EQ(TiledPicture(200, 100, 200).tiles().size(), 1U) << "in one piece without a rim";
 }
 
-TEST(PictureTiles, OneTileSeesTheWholeView) {
+TEST(PictureTiles, ASingleTileHasTheWholeView) {
   EXPECT_EQ(ViewOfTile({0, 0, 300, 200}, 300, 200), glm::dvec4(0.0, 0.0, 1.0, 1.0));
   const glm::dvec4 upper_left = ViewOfTile({0, 0, 150, 50}, 300, 200);
   EXPECT_EQ(upper_left, glm::dvec4(-0.5, 0.75, 2.0, 4.0));
@@ -224,7 +224,7 @@ HdrImage Painted(const ShaderProgram& program, int width, int height, const glm:
   return target.Read();
 }
 
-TEST_F(PaintedTiles, PutTogetherTheyAreThePictureInOnePiece) {
+TEST_F(PaintedTiles, TogetherEqualThePictureInOnePiece) {
   const ShaderProgram program({{"vertex", kVertex}}, {{"fragment", kFragment}});
   const int width = 37, height = 23;
   const HdrImage whole = Painted(program, width, height, {0.0, 0.0, 1.0, 1.0});
@@ -247,7 +247,7 @@ TEST_F(PaintedTiles, PutTogetherTheyAreThePictureInOnePiece) {
   EXPECT_LE(differing, 2) << "an edge may pass through the middle of a pixel";
 }
 
-TEST_F(PaintedTiles, WhatTheDriverCannotDrawIsRefusedWithItsLimits) {
+TEST_F(PaintedTiles, SizesBeyondTheDriverAreRefusedWithItsLimits) {
   EXPECT_NO_THROW(RequireDrawable(640, 480));
   EXPECT_GE(LargestSquareOfDriver(), 1024) << "OpenGL 3.3 has at least that";
   try {
@@ -260,7 +260,7 @@ TEST_F(PaintedTiles, WhatTheDriverCannotDrawIsRefusedWithItsLimits) {
   EXPECT_NO_THROW(CheckGl("asking leaves no errors"));
 }
 
-TEST(PictureMemory, APictureThatMemoryDoesNotHoldIsRefusedBeforeItIsMade) {
+TEST(PictureMemory, PicturesTooLargeForMemoryAreRefusedInAdvance) {
   EXPECT_NO_THROW(RequireMemoryFor(64, 64, 12));
   if (!std::filesystem::exists("/proc/meminfo")) GTEST_SKIP() << "the system does not tell";
   EXPECT_THROW(RequireMemoryFor(1 << 30, 1 << 30, 12), OptionError);
@@ -305,7 +305,7 @@ class Work {
   ShaderProgram program_;
 };
 
-TEST_F(PassTimers, OfTwoPassesTheOneWithMoreWorkTakesLonger) {
+TEST_F(PassTimers, PassWithMoreWorkTakesLonger) {
   const Work light(1), heavy(400);
   for (const PassClock clock : {PassClock::kFinishes, PassClock::kQueries}) {
     PassTimer timer(clock);
@@ -326,7 +326,7 @@ TEST_F(PassTimers, OfTwoPassesTheOneWithMoreWorkTakesLonger) {
   }
 }
 
-TEST_F(PassTimers, WithoutAClockNothingIsTimed) {
+TEST_F(PassTimers, WithoutATimerQueryNothingIsTimed) {
   const Work work(1);
   PassTimer timer;
   timer.Begin("work");
@@ -334,7 +334,7 @@ TEST_F(PassTimers, WithoutAClockNothingIsTimed) {
   EXPECT_TRUE(timer.PollAll().empty());
 }
 
-TEST_F(PassTimers, ResultsThatNobodyTakesAreBounded) {
+TEST_F(PassTimers, NumberOfUnreadResultsIsBounded) {
   PassTimer timer(PassClock::kQueries);
   for (int i = 0; i < 2000; ++i) timer.Begin("nothing");
   const std::size_t taken = timer.PollAll().size();
@@ -344,7 +344,7 @@ TEST_F(PassTimers, ResultsThatNobodyTakesAreBounded) {
   EXPECT_THAT(NamesOf(timer.PollAll()), ElementsAre("again")) << "the queries are free again";
 }
 
-TEST_F(PassTimers, AnOpenPassIsNotTaken) {
+TEST_F(PassTimers, AnOpenPassHasNoResult) {
   for (const PassClock clock : {PassClock::kFinishes, PassClock::kQueries}) {
     PassTimer timer(clock);
     timer.Begin("open");

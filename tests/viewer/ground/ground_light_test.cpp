@@ -271,7 +271,7 @@ GLint OffsetOf(const ShaderProgram& program, const char* member) {
   return offset;
 }
 
-TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
+TEST_F(GroundOnGpu, UniformBlocksHaveTheOffsetsOfTheDriver) {
   const auto site = tests::RoughSite();
   std::vector<ShaderPiece> pieces = Texts(site->material());
   pieces.push_back(
@@ -299,7 +299,7 @@ SkyByPixelBlock BlockOfNumbers(float first) {
   return {all(0), all(1), all(2), all(3), all(4), all(5), all(6), {}, {}, {}};
 }
 
-TEST(SkyByPixelBlock, OfTwoLightsHasThePlacesOfAnyLightWithTables) {
+TEST(SkyByPixelBlock, OfTwoLightsHasThePlacesOfTheLightWithTables) {
   const SkyByPixelBlock ten = BlockOfNumbers(10.0F), twenty = BlockOfNumbers(20.0F), none{};
   const SkyByPixelBlock both = WithLights(ten, twenty);
   EXPECT_EQ(both.slope_v.x, 13.0F);
@@ -316,7 +316,7 @@ TEST(SkyByPixelBlock, OfTwoLightsHasThePlacesOfAnyLightWithTables) {
   EXPECT_EQ(WithLights(ten, none).other_slope_unit.x, 0.0F);
 }
 
-TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
+TEST_F(GroundOnGpu, MountainsAreLitAsInTheRenderer) {
   const auto site = tests::RoughSite();
   for (const double elevation_deg :
        tests::ScaledDown(std::vector{50.0, 12.0, -3.0}, {12.0, -3.0})) {
@@ -329,7 +329,7 @@ TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
   }
 }
 
-TEST_F(GroundOnGpu, PixelByPixelTheSkysLightOnMountainsIsTheRenderers) {
+TEST_F(GroundOnGpu, SkylightPerPixelOnMountainsEqualsTheRenderers) {
   const auto site = tests::RoughSite();
   for (const double elevation_deg :
        tests::ScaledDown(std::vector{50.0, 12.0, -3.0, -8.0}, {12.0, -8.0})) {
@@ -342,7 +342,7 @@ TEST_F(GroundOnGpu, PixelByPixelTheSkysLightOnMountainsIsTheRenderers) {
 
 // NVIDIA's driver makes infinity of larger values, so that land was infinitely bright at midnight.
 // Hard case 23.
-TEST(IntegralTexels, AreFiniteHalfFloatsInTheOrderOfTheTexture) {
+TEST(IntegralTexels, AreFiniteHalfFloatsInTextureOrder) {
   using Sky = OccludedSkyIrradiance;
   std::vector<float> integral(Sky::kLevels * kHorizonAzimuths * Sky::kNodes * 2 * 4, 0.5F);
   integral[4] = 3e5F;  // part B of the first node
@@ -358,7 +358,7 @@ TEST(IntegralTexels, AreFiniteHalfFloatsInTheOrderOfTheTexture) {
   EXPECT_EQ(texels.back(), 0.5F);
 }
 
-TEST_F(GroundOnGpu, CoversOfOneColourAreTheRenderers) {
+TEST_F(GroundOnGpu, CoversOfOneColourAreLitAsInTheRenderer) {
   GroundCover cover;
   struct Bound {
     GroundCover::Kind kind;
@@ -379,7 +379,7 @@ TEST_F(GroundOnGpu, CoversOfOneColourAreTheRenderers) {
   }
 }
 
-TEST_F(GroundOnGpu, WaterBetweenMountainsMirrorsSkyAndSlopesAsTheRenderer) {
+TEST_F(GroundOnGpu, WaterMirrorsSkyAndSlopesAsInTheRenderer) {
   GroundCover water;
   water.kind = GroundCover::Kind::kWater;
   const auto site = tests::RoughSite(water);
@@ -392,7 +392,7 @@ TEST_F(GroundOnGpu, WaterBetweenMountainsMirrorsSkyAndSlopesAsTheRenderer) {
   }
 }
 
-TEST_F(GroundOnGpu, DrapedColoursAreTheRenderers) {
+TEST_F(GroundOnGpu, DrapedColoursAreLitAsInTheRenderer) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("alpenglow-drape-{}.png", getpid());
   DisplayImage picture{64, 64, {}};
@@ -413,7 +413,7 @@ TEST_F(GroundOnGpu, DrapedColoursAreTheRenderers) {
       << "a picture resampled at its own width of a pixel";
 }
 
-TEST_F(GroundOnGpu, MappedLandCoverIsTheRenderers) {
+TEST_F(GroundOnGpu, MappedLandCoverIsLitAsInTheRenderer) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("alpenglow-cover-{}.tif", getpid());
   std::vector<std::uint8_t> classes;
@@ -432,7 +432,7 @@ TEST_F(GroundOnGpu, MappedLandCoverIsTheRenderers) {
          "a texel of the map resampled";
 }
 
-TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {
+TEST_F(GroundOnGpu, PlanetBeyondTheTerrainIsLitAsInTheRenderer) {
   GroundCover land, sea;
   sea.sea_level_m = 0.0;
   for (const GroundCover& cover : {land, sea}) {

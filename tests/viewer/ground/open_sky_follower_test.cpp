@@ -72,7 +72,7 @@ double DifferenceOf(const SkyIrradianceGradient& one, const SkyIrradianceGradien
 
 // The sun passes a table at every second step, and another one ahead is then made. At the second
 // step it is known to sink: the first table ahead was for a rising sun.
-TEST(OpenSkyFollower, ASinkingSunMakesOneTableWhileDrawing) {
+TEST(OpenSkyFollower, ASinkingSunNeedsOneTableWhileDrawing) {
   CountedMaker maker;
   OpenSkyFollower follower(maker);
   constexpr std::array kTables{kFirstTables, 5, 6, 6, 7, 7};
@@ -84,7 +84,7 @@ TEST(OpenSkyFollower, ASinkingSunMakesOneTableWhileDrawing) {
   EXPECT_EQ(maker.while_drawing(), 1) << "of the first sky; all others are made ahead";
 }
 
-TEST(OpenSkyFollower, AtRestNoTableIsMade) {
+TEST(OpenSkyFollower, NoTableIsMadeAtRest) {
   CountedMaker maker;
   OpenSkyFollower follower(maker);
   FollowUntilMade(follower, maker, SkyOfEarth(0.1), kFirstTables);
@@ -93,7 +93,7 @@ TEST(OpenSkyFollower, AtRestNoTableIsMade) {
 }
 
 // The tolerance is that of the header. Between two tables the error is largest in the middle.
-TEST(OpenSkyFollower, BetweenTablesTheLightIsThatOfATable) {
+TEST(OpenSkyFollower, InterpolatedLightEqualsThatOfATable) {
   for (const double elevation_deg : {20.0, 2.0, -1.0, -3.0, -5.0, -7.0}) {
     CountedMaker maker;
     OpenSkyFollower follower(maker);
@@ -107,14 +107,14 @@ TEST(OpenSkyFollower, BetweenTablesTheLightIsThatOfATable) {
   }
 }
 
-TEST(OpenSkyFollower, AnAwaitedSkyIsExact) {
+TEST(OpenSkyFollower, SkyIsExactAfterWaiting) {
   OpenSkyFollower follower;
   const OpenSky sky = SkyOfEarth(0.0123);
   follower.WaitUntilReady(sky);
   EXPECT_EQ(follower.light().nodes, OpenSkyFollower::LightOf(sky).nodes);
 }
 
-TEST(OpenSkyFollower, AnotherAltitudeIsShownAtOnce) {
+TEST(OpenSkyFollower, ANewAltitudeIsShownAtOnce) {
   CountedMaker maker;
   OpenSkyFollower follower(maker);
   FollowUntilMade(follower, maker, SkyOfEarth(0.1), kFirstTables);

@@ -56,7 +56,7 @@ class HudTest : public tests::HudPicture {
   HudModel model_ = tests::Flying();
 };
 
-TEST_F(HudTest, HiddenItLeavesEveryByteOfThePictureAsItWas) {
+TEST_F(HudTest, HiddenInstrumentsChangeNoByteOfThePicture) {
   Hud hud;
   hud.Toggle(HudPanel::kHelp);
   hud.ToggleMenu();
@@ -76,7 +76,7 @@ TEST_F(HudTest, HiddenItLeavesEveryByteOfThePictureAsItWas) {
       << "and it comes back as it was";
 }
 
-TEST_F(HudTest, HidingWorksBetweenLayoutAndPaint) {
+TEST_F(HudTest, CanBeHiddenBetweenLayoutAndPaint) {
   Hud hud;
   FrameOf(hud, model_, Still(64, 48));
   hud.ToggleVisible();
@@ -90,7 +90,7 @@ TEST_F(HudTest, HidingWorksBetweenLayoutAndPaint) {
   }
 }
 
-TEST_F(HudTest, PaintingLeavesTheStateThatPassesExpect) {
+TEST_F(HudTest, PaintingKeepsTheOpenGlStateOfPasses) {
   Hud hud;
   static_cast<void>(Drawn(hud, model_, 320, 240));
   EXPECT_FALSE(glIsEnabled(GL_BLEND));
@@ -101,14 +101,14 @@ TEST_F(HudTest, PaintingLeavesTheStateThatPassesExpect) {
   EXPECT_EQ(layout, 0);
 }
 
-TEST_F(HudTest, APictureWithoutPixelsIsNotDrawnOn) {
+TEST_F(HudTest, APictureWithoutPixelsIsNotPainted) {
   Hud hud;
   FrameOf(hud, model_, Still(0, 0));
   hud.Paint(0);
   EXPECT_FALSE(hud.Taken().mouse);
 }
 
-TEST_F(HudTest, RefusesAScaleOutOfRangeAndAFontThatIsNone) {
+TEST_F(HudTest, RefusesAScaleOutOfRangeAndAnInvalidFont) {
   EXPECT_THROW(Hud({.scale = 0.4}), InputError);
   EXPECT_THROW(Hud({.scale = std::nan("")}), InputError);
   HudSettings settings;
@@ -116,7 +116,7 @@ TEST_F(HudTest, RefusesAScaleOutOfRangeAndAFontThatIsNone) {
   EXPECT_THROW(Hud{settings}, InputError);
 }
 
-TEST_F(HudTest, TheMouseIsThePanelsWhereTheyAreAndTheFlightsElsewhere) {
+TEST_F(HudTest, PanelsTakeTheMouseOnlyInsideThem) {
   Hud hud;
   hud.Toggle(HudPanel::kLeave);  // in the middle below the clock
   for (int frame = 0; frame < 3; ++frame)
@@ -129,7 +129,7 @@ TEST_F(HudTest, TheMouseIsThePanelsWhereTheyAreAndTheFlightsElsewhere) {
   EXPECT_FALSE(hud.Taken().mouse) << "a drag that began in the picture stays the flight's";
 }
 
-TEST_F(HudTest, AClickIntoTheStripOfTheDayIsAShareOfTheDay) {
+TEST_F(HudTest, AClickOnTheDayStripGivesAFractionOfTheDay) {
   Hud hud;
   hud.Toggle(HudPanel::kPlaceAndTime);
   const auto found = Find(hud, 200.0, 40, 300,
@@ -144,7 +144,7 @@ TEST_F(HudTest, AClickIntoTheStripOfTheDayIsAShareOfTheDay) {
   EXPECT_EQ(At(hud, 900.0, found->down, false).day_fraction, std::nullopt);
 }
 
-TEST_F(HudTest, ASliderAsksForWhatItIsDraggedTo) {
+TEST_F(HudTest, ASliderRequestsTheValueItIsDraggedTo) {
   Hud hud;
   hud.Toggle(HudPanel::kAir);
   // Beside the knob: Dear ImGui 1.90 changes nothing where the knob is pressed.
@@ -161,7 +161,7 @@ TEST_F(HudTest, ASliderAsksForWhatItIsDraggedTo) {
   EXPECT_FALSE(none.air) << "nothing is asked for once it is let go";
 }
 
-TEST_F(HudTest, TheLandingLightIsSwitchedWhereItsNameStands) {
+TEST_F(HudTest, AClickOnItsNameSwitchesTheLandingLight) {
   Hud hud;
   hud.Toggle(HudPanel::kLights);
   EXPECT_TRUE(Find(hud, kHudWidth - 100.0, 250, 482, [](const Changes& request) {
@@ -169,7 +169,7 @@ TEST_F(HudTest, TheLandingLightIsSwitchedWhereItsNameStands) {
               }).has_value());
 }
 
-TEST_F(HudTest, ATypedInstantIsAskedForWithEnter) {
+TEST_F(HudTest, EnterRequestsTheTypedInstant) {
   Hud hud;
   hud.Toggle(HudPanel::kPlaceAndTime);
   std::optional<double> field_y;
@@ -187,7 +187,7 @@ TEST_F(HudTest, ATypedInstantIsAskedForWithEnter) {
   EXPECT_EQ(FrameOf(hud, model_, typing).time, "2026-06-21T04:00:00Z");
 }
 
-TEST_F(HudTest, APictureIsAskedForInTheSizeThatIsSeen) {
+TEST_F(HudTest, APictureIsRequestedInTheShownSize) {
   Hud hud;
   hud.Toggle(HudPanel::kCapture);
   std::optional<PictureOrder> capture;
@@ -204,7 +204,7 @@ TEST_F(HudTest, APictureIsAskedForInTheSizeThatIsSeen) {
   EXPECT_FALSE(capture->with_instruments);
 }
 
-TEST_F(HudTest, TheHeadingThatIsHeldIsTheOneFlown) {
+TEST_F(HudTest, HoldingAHeadingHoldsTheCurrentOne) {
   Hud hud;
   model_.flight.heading_rad = -0.5;
   hud.Toggle(HudPanel::kFlight);
@@ -221,7 +221,7 @@ TEST_F(HudTest, TheHeadingThatIsHeldIsTheOneFlown) {
   EXPECT_FALSE(hold->has_value()) << "a second click lets it go";
 }
 
-TEST_F(HudTest, LeavingIsAskedOnce) {
+TEST_F(HudTest, LeavingIsRequestedOnce) {
   Hud hud;
   hud.Toggle(HudPanel::kLeave);
   const auto quits = [](const Changes& request) { return request.leaves; };
@@ -279,7 +279,7 @@ TEST_F(HudTest, PanelsStayInAPictureThatShrinks) {
   EXPECT_LT(box.bottom, 240);
 }
 
-TEST_F(HudTest, ItIsDimAtNight) {
+TEST_F(HudTest, IsDimAtNight) {
   Hud hud;
   HudModel night = model_;
   night.exposure.ev100 = -4.0;
@@ -302,7 +302,7 @@ WindowEvents Keys(std::vector<KeyEvent> keys) {
   return events;
 }
 
-TEST(PanelKeys, AKeyPressedAndLetGoBetweenTwoFramesIsSeenOnce) {
+TEST(PanelKeys, AKeyPressedAndReleasedWithinAFrameIsSeenOnce) {
   PanelKeys keys;
   keys.Take(Keys({{GLFW_KEY_BACKSPACE, 0, GLFW_PRESS}, {GLFW_KEY_BACKSPACE, 0, GLFW_RELEASE}}));
   EXPECT_TRUE(keys.IsDown(GLFW_KEY_BACKSPACE));
@@ -310,7 +310,7 @@ TEST(PanelKeys, AKeyPressedAndLetGoBetweenTwoFramesIsSeenOnce) {
   EXPECT_FALSE(keys.IsDown(GLFW_KEY_BACKSPACE));
 }
 
-TEST(PanelKeys, AHeldKeyStaysDownUntilItIsLetGo) {
+TEST(PanelKeys, AHeldKeyStaysDownUntilItIsReleased) {
   PanelKeys keys;
   keys.Take(Keys({{GLFW_KEY_LEFT, 0, GLFW_PRESS}}));
   EXPECT_TRUE(keys.IsDown(GLFW_KEY_LEFT));
@@ -322,7 +322,7 @@ TEST(PanelKeys, AHeldKeyStaysDownUntilItIsLetGo) {
   EXPECT_FALSE(keys.IsDown(GLFW_KEY_LEFT));
 }
 
-TEST(PanelKeys, AWindowOutOfFocusReleasesAllKeys) {
+TEST(PanelKeys, LosingFocusReleasesAllKeys) {
   PanelKeys keys;
   keys.Take(Keys({{GLFW_KEY_RIGHT_CONTROL, 0, GLFW_PRESS}}));
   WindowEvents away;
@@ -367,7 +367,7 @@ std::size_t CountOf(const std::string& part, const std::string& text) {
   return count;
 }
 
-TEST(KeyHelp, EveryActionIsWrittenUnderItsHeading) {
+TEST(KeyHelp, ListsEveryActionUnderItsHeading) {
   for (const int width : {320, 1280}) {
     const std::string written = WrittenHelp(width);
     for (const ActionSection& section : ActionSections()) {
@@ -382,7 +382,7 @@ TEST(KeyHelp, EveryActionIsWrittenUnderItsHeading) {
   }
 }
 
-TEST(KeyHelp, ColumnsKeepTheOrderAndAreAboutEven) {
+TEST(KeyHelp, ColumnsKeepTheOrderAndHaveSimilarHeights) {
   const std::vector<ActionSection> sections = ActionSections();
   for (const std::size_t most : {1U, 2U, 3U, 40U}) {
     const HelpColumns columns = InColumns(sections, most);

@@ -39,7 +39,7 @@ struct Told {
   double left, top, right, bottom;
 };
 
-TEST_F(Instruments, EachTellsOfItsValueAndOfNoOther) {
+TEST_F(Instruments, EachValueChangesOnlyItsOwnInstrument) {
   const std::vector<Told> cases{
       {"heading", [](HudModel& m) { m.flight.heading_rad += 0.1; }, 0.3, 0.0, 0.7, 0.1},
       {"sun", [](HudModel& m) { m.sky.sun_azimuth_rad = 0.9; }, 0.35, 0.0, 1.0, 0.12},
@@ -113,7 +113,7 @@ std::optional<double> ElevationOfLine(const HdrImage& image, const HudFlight& fl
   return std::asin(ThroughPixel(flight, x + 0.5, sum / count).z);
 }
 
-TEST_F(Instruments, TheHorizonOfTheLadderLiesOnTheHorizon) {
+TEST_F(Instruments, PitchLadderLiesOnTheHorizonOfThePicture) {
   struct Attitude {
     double pitch_deg, roll_deg, fov_deg;
   };
@@ -145,7 +145,7 @@ TEST_F(Instruments, TheHorizonOfTheLadderLiesOnTheHorizon) {
   }
 }
 
-TEST_F(Instruments, TwiceTheScaleIsTheSameOnTwiceTheDots) {
+TEST_F(Instruments, DoubleScaleOnDoubleResolutionLooksTheSame) {
   Hud once({.scale = 1.0}), twice({.scale = 2.0});
   HudModel model = tests::Flying(), changed = model;
   changed.time.local = "07:03:51";
@@ -160,7 +160,7 @@ TEST_F(Instruments, TwiceTheScaleIsTheSameOnTwiceTheDots) {
   EXPECT_NEAR(large.bottom, 2.0 * small.bottom, kSlack);
 }
 
-TEST_F(Instruments, TheSmallestPictureHasNumbersInsteadOfTapes) {
+TEST_F(Instruments, SmallestPictureHasNumbersInsteadOfTapes) {
   Hud hud;
   const HdrImage full = Drawn(hud, tests::Flying(), 320, 240);
   HudModel faster = tests::Flying();
@@ -171,7 +171,7 @@ TEST_F(Instruments, TheSmallestPictureHasNumbersInsteadOfTapes) {
   EXPECT_LE(box.right, 100);
 }
 
-TEST_F(Instruments, ALongMessageIsWrappedIntoTheSmallestPicture) {
+TEST_F(Instruments, LongMessagesWrapInTheSmallestPicture) {
   Hud hud;
   HudModel model = tests::Flying();
   const HdrImage before = Drawn(hud, model, 320, 240);
@@ -185,7 +185,7 @@ TEST_F(Instruments, ALongMessageIsWrappedIntoTheSmallestPicture) {
   EXPECT_GT(box.bottom - box.top, 40) << "three lines";
 }
 
-TEST_F(Instruments, EveryAttitudeAndViewIsDrawn) {
+TEST_F(Instruments, AreDrawnForEveryAttitudeAndView) {
   Hud hud;
   for (const double pitch_deg : {-90.0, -89.9, -45.0, 89.0, 90.0}) {
     for (const double roll_deg : {-180.0, 0.0, 97.0}) {
@@ -202,7 +202,7 @@ TEST_F(Instruments, EveryAttitudeAndViewIsDrawn) {
   }
 }
 
-TEST(PitchLadder, RungsStandApart) {
+TEST(PitchLadder, RungsDoNotOverlap) {
   EXPECT_EQ(RungStep_deg(21.3), 5.0) << "60 degrees on 1280 pixels";
   EXPECT_EQ(RungStep_deg(128.0), 1.0);
   EXPECT_EQ(RungStep_deg(4.0), 30.0);
@@ -219,7 +219,7 @@ TEST(Tapes, MarksAreRoundNumbers) {
 
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
 
-TEST(HudText, PlacesNameTheirHemisphere) {
+TEST(HudText, PlacesHaveLettersForTheHemisphere) {
   EXPECT_EQ(LatitudeText(46.5), "46.5000° N");
   EXPECT_EQ(LatitudeText(-33.0), "33.0000° S");
   EXPECT_EQ(LongitudeText(-8.25), "8.2500° W");
@@ -230,14 +230,14 @@ TEST(HudText, PlacesNameTheirHemisphere) {
   EXPECT_EQ(LongitudeText(-0.00001), "0.0000° E");
 }
 
-TEST(HudText, HeadingsAreThreeDigitsBelow360) {
+TEST(HudText, HeadingsHaveThreeDigitsBelow360) {
   EXPECT_EQ(HeadingText(Radians(7.2)), "007");
   EXPECT_EQ(HeadingText(Radians(-90.0)), "270");
   EXPECT_EQ(HeadingText(Radians(359.7)), "000") << "not 360";
   EXPECT_EQ(HeadingText(Radians(725.0)), "005");
 }
 
-TEST(HudText, NothingIsMinusZero) {
+TEST(HudText, ZeroHasNoMinusSign) {
   EXPECT_EQ(DegreesText(Radians(-0.04)), "+0.0°");
   EXPECT_EQ(HeightText(-0.3, HudUnits::kMetric).number, "0");
   EXPECT_EQ(ClimbText(-0.01, HudUnits::kMetric).number, "+0.0");
@@ -254,7 +254,7 @@ TEST(HudText, HeightsAndSpeedsFromTheGroundToOrbit) {
   EXPECT_EQ(Joined(ClimbText(5.08, HudUnits::kAviation)), "+1000 ft/min");
 }
 
-TEST(HudText, UnitsSayHowManyOfThemAreOneOfSi) {
+TEST(HudText, UnitsConvertFromSi) {
   for (const HudUnits units : {HudUnits::kMetric, HudUnits::kAviation}) {
     for (const double value : {120.0, 3e5}) {
       const Quantity height = HeightText(value, units), speed = SpeedText(value, units);
@@ -264,7 +264,7 @@ TEST(HudText, UnitsSayHowManyOfThemAreOneOfSi) {
   }
 }
 
-TEST(HudText, LuminancesHaveThreeDigitsThatCount) {
+TEST(HudText, LuminancesHaveThreeSignificantDigits) {
   EXPECT_EQ(LuminanceText(8213.0), "8210 cd/m²");
   EXPECT_EQ(LuminanceText(0.0123456), "0.0123 cd/m²");
   EXPECT_EQ(LuminanceText(1.0), "1.00 cd/m²");
@@ -279,7 +279,7 @@ TEST(HudText, RatesOfTimeAreFactors) {
   EXPECT_EQ(RateText(60.0, true), "paused");
 }
 
-TEST(HudTheme, TheNightIsDimAndHasNoBlue) {
+TEST(HudTheme, NightColoursAreDimWithoutBlue) {
   const HudColours &day = ColoursOf(HudTheme::kDay), &night = ColoursOf(HudTheme::kNight);
   for (const HudColour& colour : {night.text, night.quiet, night.accent, night.warning, night.plate,
                                   night.panel, night.control, night.active}) {
@@ -307,7 +307,7 @@ double ContrastOf(const HudColour& text, const HudColour& behind) {
 
 constexpr HudColour kWhite{1.0F, 1.0F, 1.0F, 1.0F};
 
-TEST(HudTheme, WhatIsWrittenOnAPlateIsReadableOverWhite) {
+TEST(HudTheme, TextOnPlatesIsReadableOverWhite) {
   for (const HudTheme theme : {HudTheme::kDay, HudTheme::kNight}) {
     const HudColours& colours = ColoursOf(theme);
     for (const HudColour& colour : {colours.text, colours.quiet, colours.accent, colours.warning}) {
@@ -317,7 +317,7 @@ TEST(HudTheme, WhatIsWrittenOnAPlateIsReadableOverWhite) {
   }
 }
 
-TEST(HudTheme, WhatIsWrittenOnControlsIsReadableOverWhite) {
+TEST(HudTheme, TextOnControlsIsReadableOverWhite) {
   for (const HudTheme theme : {HudTheme::kDay, HudTheme::kNight}) {
     const HudColours& colours = ColoursOf(theme);
     const HudColour control = Over(Over(kWhite, colours.panel), colours.control);
@@ -327,7 +327,7 @@ TEST(HudTheme, WhatIsWrittenOnControlsIsReadableOverWhite) {
   }
 }
 
-TEST(HudTheme, ADuskDoesNotFlicker) {
+TEST(HudTheme, DoesNotFlickerAtDusk) {
   const auto follow = [](std::initializer_list<double> exposures) {
     HudTheme theme = HudTheme::kDay;
     int changes = 0;
@@ -355,7 +355,7 @@ DayStripRequest Alps() {
   return request;
 }
 
-TEST(DayStrip, NoonIsBlueMidnightBlackAndDuskRedBelow) {
+TEST(DayStrip, IsBlueAtNoonBlackAtMidnightAndRedBelowAtDusk) {
   const DayStrip strip = MakeDayStrip(Alps());
   const auto& noon = strip.at(11, 0);
   EXPECT_GT(noon[2], noon[0]) << "the zenith at noon";
@@ -368,7 +368,7 @@ TEST(DayStrip, NoonIsBlueMidnightBlackAndDuskRedBelow) {
 }
 
 // The reference solution: the table of the sky, and a day's exposure from its definition.
-TEST(DayStrip, ColoursAreThoseOfTheSky) {
+TEST(DayStrip, ColoursEqualThoseOfTheSky) {
   const DayStripRequest request = Alps();
   const DayStrip strip = MakeDayStrip(request);
   const Medium& medium = tests::Earth().medium();
@@ -408,7 +408,7 @@ TEST(DayStrip, ColoursAreThoseOfTheSky) {
   }
 }
 
-TEST(DayStrip, AStripIsMadeAnewOnlyForWhatItWouldShow) {
+TEST(DayStrip, IsMadeAgainOnlyWhenItWouldChange) {
   const DayStripRequest shown = Alps();
   DayStripRequest request = shown;
   request.place.latitude_deg += 0.1;

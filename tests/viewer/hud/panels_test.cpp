@@ -128,7 +128,7 @@ TEST_F(PanelsTest, NoPanelCoversTheClock) {
   }
 }
 
-TEST_F(PanelsTest, PanelsAreSeenInASmallPictureWithTheLargestLetters) {
+TEST_F(PanelsTest, PanelsFitIntoASmallPictureWithTheLargestFont) {
   Hud hud({.scale = 8.0});
   const HdrImage bare = Drawn(hud, model_, 320, 240);
   for (std::size_t panel = 0; panel < kHudPanels; ++panel) {
@@ -141,7 +141,7 @@ TEST_F(PanelsTest, PanelsAreSeenInASmallPictureWithTheLargestLetters) {
   }
 }
 
-TEST_F(PanelsTest, APanelThatIsDraggedOverTheClockComesBack) {
+TEST_F(PanelsTest, APanelDraggedOverTheClockMovesBack) {
   Hud hud;
   const HdrImage bare = Drawn(hud, model_, kPictureWidth, kPictureHeight);
   const Box clock =
@@ -170,7 +170,7 @@ TEST_F(PanelsTest, APanelThatIsDraggedOverTheClockComesBack) {
   EXPECT_NEAR(after.left, before.left - 90, 2) << "but it has been moved";
 }
 
-TEST_F(PanelsTest, EnterLeavesTheFlight) {
+TEST_F(PanelsTest, EnterConfirmsLeaving) {
   Hud hud;
   EXPECT_FALSE(PressEnter(hud).leaves) << "nobody has been asked";
   static_cast<void>(Type(hud, ""));
@@ -179,7 +179,7 @@ TEST_F(PanelsTest, EnterLeavesTheFlight) {
   EXPECT_TRUE(PressEnter(hud).leaves);
 }
 
-TEST_F(PanelsTest, EnterInAFieldDoesNotLeaveTheFlight) {
+TEST_F(PanelsTest, EnterInATextFieldDoesNotLeave) {
   Hud hud;
   hud.Toggle(HudPanel::kPlaceAndTime);
   hud.Toggle(HudPanel::kLeave);
@@ -190,7 +190,7 @@ TEST_F(PanelsTest, EnterInAFieldDoesNotLeaveTheFlight) {
   EXPECT_FALSE(request.leaves);
 }
 
-TEST_F(PanelsTest, EnterFliesToTheFirstPlaceThatIsFound) {
+TEST_F(PanelsTest, EnterFliesToTheFirstFoundPlace) {
   Hud hud;
   hud.Toggle(HudPanel::kPlaceAndTime);
   const double instant_y = FieldFrom(hud, 120.0, 200);
@@ -199,7 +199,7 @@ TEST_F(PanelsTest, EnterFliesToTheFirstPlaceThatIsFound) {
   EXPECT_EQ(PressEnter(hud).named_place, "Zürich");
 }
 
-TEST_F(PanelsTest, ClicksInTheListOfPlacesAreThoseThatWereFound) {
+TEST_F(PanelsTest, AClickInTheListFliesToThatPlace) {
   Hud hud;
   hud.Toggle(HudPanel::kPlaceAndTime);
   const double instant_y = FieldFrom(hud, 120.0, 200);
@@ -265,7 +265,7 @@ TEST_F(PanelsTest, TheFlightPanelSetsModeThrottleAndSpeed) {
   EXPECT_NEAR(**speed, model_.flight.ground_speed_m_per_s, 1e-9) << "as fast as it flies";
 }
 
-TEST_F(PanelsTest, OutsideOfTheAircraftThereIsNoThrottle) {
+TEST_F(PanelsTest, ThrottleIsShownOnlyForTheAircraft) {
   Hud hud;
   model_.flight.throttle.reset();
   hud.Toggle(HudPanel::kFlight);
@@ -420,7 +420,7 @@ class Readable : public tests::HudPicture {
   }();
 };
 
-TEST_F(Readable, InstrumentsHaveContrastOverEveryPicture) {
+TEST_F(Readable, InstrumentsContrastWithEveryPicture) {
   for (const HudThemeChoice theme : {HudThemeChoice::kDay, HudThemeChoice::kNight}) {
     const char* const name = theme == HudThemeChoice::kDay ? "day" : "night";
     Hud hud({.preferences = {theme}}), large({.scale = 2.0, .preferences = {theme}});
@@ -430,7 +430,7 @@ TEST_F(Readable, InstrumentsHaveContrastOverEveryPicture) {
   }
 }
 
-TEST_F(Readable, PanelsHaveContrastOverDarkAndBright) {
+TEST_F(Readable, PanelsContrastWithDarkAndBrightPictures) {
   model_.tables = {{"air", "50 ms", ""}};
   for (const HudThemeChoice theme : {HudThemeChoice::kDay, HudThemeChoice::kNight}) {
     Hud hud({.preferences = {theme}});

@@ -46,7 +46,7 @@ void Press(GamepadState& pad, int button, bool down = true) {
   pad.buttons[static_cast<std::size_t>(button)] = down ? GLFW_PRESS : GLFW_RELEASE;
 }
 
-TEST(Controls, AHeldKeyMovesItsControlToTheEndInAQuarterOfASecondAndBack) {
+TEST(Controls, AHeldKeyReachesFullDeflectionInAQuarterSecond) {
   Hands controls;
   Hold(controls, GLFW_KEY_W);
   EXPECT_NEAR(controls.Interpret(FlightMode::kFree, 0.125).pilot.camera.forward, 0.5, 1e-12);
@@ -57,7 +57,7 @@ TEST(Controls, AHeldKeyMovesItsControlToTheEndInAQuarterOfASecondAndBack) {
   EXPECT_EQ(controls.Interpret(FlightMode::kFree, 0.25).pilot.camera.forward, 0.0);
 }
 
-TEST(Controls, TheWayOfAControlDoesNotDependOnTheFrameRate) {
+TEST(Controls, DeflectionDoesNotDependOnTheFrameRate) {
   Hands fast, slow;
   Hold(fast, GLFW_KEY_LEFT);
   Hold(slow, GLFW_KEY_LEFT);
@@ -67,7 +67,7 @@ TEST(Controls, TheWayOfAControlDoesNotDependOnTheFrameRate) {
               slow.Interpret(FlightMode::kAircraft, 0.2).pilot.stick.roll_right, 1e-12);
 }
 
-TEST(Controls, KeysThatOpposeEachOtherCancelAndTwoForOneThingAreOne) {
+TEST(Controls, OppositeKeysCancelAndEqualKeysCountOnce) {
   Hands controls;
   Hold(controls, GLFW_KEY_W);
   Hold(controls, GLFW_KEY_S);
@@ -78,7 +78,7 @@ TEST(Controls, KeysThatOpposeEachOtherCancelAndTwoForOneThingAreOne) {
   EXPECT_EQ(pilot.camera.up, 1.0);
 }
 
-TEST(Controls, ThePressesComeInTheirOrderAndOnlyOnce) {
+TEST(Controls, PressesArriveInOrderAndOnce) {
   Hands controls;
   Tap(controls, GLFW_KEY_P);
   Tap(controls, GLFW_KEY_T);
@@ -88,7 +88,7 @@ TEST(Controls, ThePressesComeInTheirOrderAndOnlyOnce) {
   EXPECT_THAT(controls.Interpret(FlightMode::kFree, kFrame_s).actions, IsEmpty());
 }
 
-TEST(Controls, ASwitchDoesNotRepeatAndAStepDoes) {
+TEST(Controls, AHeldKeyRepeatsStepsButNotSwitches) {
   Hands controls;
   for (const int key : {GLFW_KEY_P, GLFW_KEY_X}) {
     controls.Key(key, GLFW_PRESS, 0);
@@ -99,7 +99,7 @@ TEST(Controls, ASwitchDoesNotRepeatAndAStepDoes) {
               ElementsAre("P", "X", "X", "X"));
 }
 
-TEST(Controls, AKeyDoesInEachModeWhatTheTableSays) {
+TEST(Controls, KeysActByModeAsInTheTable) {
   Hands controls;
   Tap(controls, GLFW_KEY_W);
   EXPECT_THAT(KeysOf(controls.Interpret(FlightMode::kAircraft, kFrame_s).actions),
@@ -108,7 +108,7 @@ TEST(Controls, AKeyDoesInEachModeWhatTheTableSays) {
   EXPECT_THAT(controls.Interpret(FlightMode::kFree, kFrame_s).actions, IsEmpty());
 }
 
-TEST(Controls, WhatIsHeldGoesByThePlaceOfAKeyAndTheRestByItsPrint) {
+TEST(Controls, HeldKeysGoByPositionAndPressesByTheirLetter) {
   Hands controls;
   // A French keyboard: the key where Americans have W prints Z, the one of Z prints W.
   controls.Key(GLFW_KEY_W, GLFW_PRESS, 0, GLFW_KEY_Z);
@@ -122,7 +122,7 @@ TEST(Controls, WhatIsHeldGoesByThePlaceOfAKeyAndTheRestByItsPrint) {
 }
 
 // Hard case 49.
-TEST(Controls, MinimisedNothingIsHeldSwitchesActAtOnceAndPicturesAreRefusedInWords) {
+TEST(Controls, MinimisedWindowHoldsNoKeysAndRefusesPictures) {
   Hands controls;
   Hold(controls, GLFW_KEY_W);
   EXPECT_EQ(controls.Interpret(FlightMode::kFree, 1.0).pilot.camera.forward, 1.0);
@@ -144,7 +144,7 @@ TEST(Controls, MinimisedNothingIsHeldSwitchesActAtOnceAndPicturesAreRefusedInWor
   EXPECT_THAT(shown.refused, IsEmpty());
 }
 
-TEST(Controls, AWindowThatLosesTheKeyboardLetsGo) {
+TEST(Controls, LosingTheKeyboardReleasesAllControls) {
   Hands controls;
   Hold(controls, GLFW_KEY_W);
   static_cast<void>(controls.Interpret(FlightMode::kFree, 1.0));
@@ -160,7 +160,7 @@ TEST(Controls, AWindowThatLosesTheKeyboardLetsGo) {
   EXPECT_GT(controls.Interpret(FlightMode::kFree, kFrame_s, pad).pilot.camera.right, 0.9);
 }
 
-TEST(Controls, ADragTakesHoldOfTheSceneAndLookingTurnsTheHead) {
+TEST(Controls, DraggingMovesTheSceneAndLookingTurnsTheHead) {
   Hands controls;
   constexpr double kWide = 2.0;
   controls.MouseAt(0.5, 0.5, kWide);
@@ -183,7 +183,7 @@ TEST(Controls, ADragTakesHoldOfTheSceneAndLookingTurnsTheHead) {
   EXPECT_NEAR(looked.look_up, 0.1, 1e-12) << "forward looks up";
 }
 
-TEST(Controls, TheInstrumentsKeepWhatTheMouseDoesOnThem) {
+TEST(Controls, MouseOnInstrumentsDoesNotMoveTheView) {
   Hands controls;
   controls.MouseAt(0.5, 0.5, 1.0);
   static_cast<void>(controls.Interpret(FlightMode::kFree, kFrame_s));
@@ -196,7 +196,7 @@ TEST(Controls, TheInstrumentsKeepWhatTheMouseDoesOnThem) {
   EXPECT_THAT(intent.actions, IsEmpty());
 }
 
-TEST(Controls, TheMouseFliesFromTheMiddleOfTheWindow) {
+TEST(Controls, MouseSteersRelativeToTheMiddleOfTheWindow) {
   Hands controls;
   controls.controls.NextMouseMode();
   controls.controls.NextMouseMode();
@@ -215,7 +215,7 @@ TEST(Controls, TheMouseFliesFromTheMiddleOfTheWindow) {
               1e-12);
 }
 
-TEST(Controls, TheWheelChangesTheSpeedByWholeSteps) {
+TEST(Controls, WheelChangesTheSpeedByWholeSteps) {
   Hands controls;
   controls.Wheel(0.6);
   EXPECT_THAT(controls.Interpret(FlightMode::kFree, kFrame_s).actions, IsEmpty());
@@ -227,7 +227,7 @@ TEST(Controls, TheWheelChangesTheSpeedByWholeSteps) {
               ElementsAre("-, Keypad -", "-, Keypad -"));
 }
 
-TEST(Gamepad, AStickIsDeadInTheMiddleWholeAtItsEndAndKeepsItsDirection) {
+TEST(Gamepad, StickHasADeadZoneAFullEndAndKeepsDirection) {
   const ControlSettings settings{.dead_zone = 0.2, .expo = 0.5};
   EXPECT_EQ(Shaped({0.1, -0.17}, settings).right, 0.0);
   EXPECT_NEAR(Shaped({1.0, 0.0}, settings).right, 1.0, 1e-15);
@@ -240,7 +240,7 @@ TEST(Gamepad, AStickIsDeadInTheMiddleWholeAtItsEndAndKeepsItsDirection) {
       << "half way after the dead zone, half linear and half cubic";
 }
 
-TEST(Gamepad, AStickGrowsWithoutAJumpAtTheEdgeOfTheDeadZone) {
+TEST(Gamepad, StickIsContinuousAtTheEdgeOfTheDeadZone) {
   const ControlSettings settings;
   double before = 0.0;
   for (double x = 0.0; x <= 1.0; x += 0.001) {
@@ -251,7 +251,7 @@ TEST(Gamepad, AStickGrowsWithoutAJumpAtTheEdgeOfTheDeadZone) {
   }
 }
 
-TEST(Gamepad, SticksAndTriggersFlyTheAircraftAndMoveTheCamera) {
+TEST(Gamepad, SticksAndTriggersMoveAircraftAndCamera) {
   Hands controls;
   GamepadState pad = Pad();
   Push(pad, GLFW_GAMEPAD_AXIS_LEFT_X, 1.0);
@@ -268,7 +268,7 @@ TEST(Gamepad, SticksAndTriggersFlyTheAircraftAndMoveTheCamera) {
   EXPECT_EQ(free.stick.roll_right, 0.0);
 }
 
-TEST(Gamepad, PulledBackTheNoseRisesAndInvertedItSinks) {
+TEST(Gamepad, PullingRaisesTheNoseUnlessInverted) {
   Hands controls;
   GamepadState pad = Pad();
   Push(pad, GLFW_GAMEPAD_AXIS_LEFT_Y, 1.0);
@@ -285,7 +285,7 @@ TEST(Gamepad, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(Controls({.expo = 1.5}), InputError);
 }
 
-TEST(Gamepad, AnUntouchedPadAsksForNothing) {
+TEST(Gamepad, AnUntouchedPadRequestsNothing) {
   Hands controls;
   const Intent intent = controls.Interpret(FlightMode::kAircraft, kFrame_s, Pad());
   EXPECT_EQ(intent.pilot.stick.throttle_up, 0.0) << "triggers rest at -1";
@@ -293,7 +293,7 @@ TEST(Gamepad, AnUntouchedPadAsksForNothing) {
   EXPECT_THAT(intent.actions, IsEmpty());
 }
 
-TEST(Gamepad, AButtonPressesOnceAndTheCrossRepeats) {
+TEST(Gamepad, ButtonsPressOnceAndTheCrossRepeats) {
   Hands controls;
   GamepadState pad = Pad();
   Press(pad, GLFW_GAMEPAD_BUTTON_START);
@@ -352,7 +352,7 @@ void ForEachKey(const Visit& visit) {
   }
 }
 
-TEST(Action, EveryKeyOfTheTableDoesWhatItsLineSaysAndNoneDoesTwoThings) {
+TEST(Action, EveryKeyHasTheEffectOfItsLineAndNoOther) {
   int keys = 0;
   ForEachKey([&](const std::string& text, const Action& row, bool not_free) {
     const KeyChord chord = KeyChordFromText(text);
@@ -381,7 +381,7 @@ TEST(Action, NoKeyIsListedTwiceForOneMode) {
   }
 }
 
-TEST(Action, SectionsHaveEveryActionOnceUnderAHeadingOfItsOwn) {
+TEST(Action, EveryActionIsInOneSection) {
   std::vector<std::string_view> headings, actions;
   for (const ActionSection& section : ActionSections()) {
     headings.push_back(section.heading);
@@ -408,7 +408,7 @@ std::string_view HelpOf(const char* text, FlightMode mode) {
   return action == nullptr ? "" : action->help;
 }
 
-TEST(Action, KeysAreThoseOfFlightGear) {
+TEST(Action, FlightKeysAreThoseOfFlightGear) {
   const std::pair<const char*, const char*> keys[] = {
       {"Up", "stick forward: nose down"},  // elevator down
       {"Keypad 2", "stick back: nose up"},
@@ -439,7 +439,7 @@ TEST(Action, KeysAreThoseOfFlightGear) {
   for (const auto& [key, help] : keys) EXPECT_EQ(HelpOf(key, FlightMode::kAircraft), help) << key;
 }
 
-TEST(Action, InTheFreeCameraLettersMoveTheEyeWithAndWithoutShift) {
+TEST(Action, LettersMoveTheFreeCameraWithAndWithoutShift) {
   const Action* forward = ActionOfKey(GLFW_KEY_W, 0, FlightMode::kFree);
   ASSERT_NE(forward, nullptr);
   EXPECT_EQ(forward->help, "fly forward");
@@ -455,7 +455,7 @@ TEST(Action, InTheFreeCameraLettersMoveTheEyeWithAndWithoutShift) {
   EXPECT_EQ(ActionOfKey(GLFW_KEY_UNKNOWN, 0, FlightMode::kFree), nullptr);
 }
 
-TEST(Action, KeyTextsAreReadAndOthersRefused) {
+TEST(Action, KeyTextsAreParsedAndOthersRefused) {
   EXPECT_EQ(KeyChordFromText("F12").key, GLFW_KEY_F12);
   EXPECT_EQ(KeyChordFromText("Keypad 0").key, GLFW_KEY_KP_0);
   EXPECT_EQ(KeyChordFromText("Ctrl+Shift+Q").modifiers, GLFW_MOD_SHIFT | GLFW_MOD_CONTROL);
@@ -464,7 +464,7 @@ TEST(Action, KeyTextsAreReadAndOthersRefused) {
   }
 }
 
-TEST(Action, LettersGoByWhatIsPrintedOnTheKey) {
+TEST(Action, LettersAreThosePrintedOnTheKey) {
   EXPECT_EQ(PrintedKey(GLFW_KEY_W, "z"), GLFW_KEY_Z) << "a French keyboard";
   EXPECT_EQ(PrintedKey(GLFW_KEY_1, "&"), GLFW_KEY_1);
   EXPECT_EQ(PrintedKey(GLFW_KEY_KP_5, "5"), GLFW_KEY_KP_5) << "keypads are their own keys";
@@ -473,12 +473,12 @@ TEST(Action, LettersGoByWhatIsPrintedOnTheKey) {
 }
 
 // Each key of the help text of the program is one of the table.
-TEST(Action, TheFirstKeysAreThoseOfTheTable) {
+TEST(Action, FirstKeysEqualThoseOfTheTable) {
   EXPECT_THAT(FirstKeysText(), HasSubstr("W: fly forward"));
   EXPECT_THAT(FirstKeysText(), HasSubstr("F5: next sunrise"));
 }
 
-TEST(Action, EffectsReportWhatTheyChange) {
+TEST(Action, EffectsReportTheChange) {
   tests::RecordedCommands flight;
   EXPECT_EQ(flight.Press("K"), "exposure +0.3 EV");
   EXPECT_EQ(flight.Press("Ctrl+K"), "exposure follows the meter");
@@ -526,7 +526,7 @@ TEST(FlightController, KeysChangeFlightAndTime) {
   EXPECT_EQ(flight.Press("3"), "there is no track to follow");
 }
 
-TEST(FlightController, GoesAroundTheModesThatThereAre) {
+TEST(FlightController, CyclesThroughAvailableModes) {
   FlightController controller = NewFlightController();
   EXPECT_EQ(controller.EnterNext(1), "aircraft");
   EXPECT_EQ(controller.EnterNext(1), "free camera");
@@ -536,7 +536,7 @@ TEST(FlightController, GoesAroundTheModesThatThereAre) {
   EXPECT_EQ(controller.Enter(FlightMode::kFree), "free camera");
 }
 
-TEST(FlightController, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
+TEST(FlightController, PauseStopsTimeAndAircraftButNotTheFreeCamera) {
   RecordedCommands flight;
   FlightController& controller = flight.controller();
   EXPECT_EQ(flight.Press("P"), "paused");
@@ -551,7 +551,7 @@ TEST(FlightController, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
   EXPECT_EQ(Shows(controller), "2026-06-21T12:00:00Z");
 }
 
-TEST(FlightController, AFlightAtFourTimesItsSpeedTakesTheClockAlong) {
+TEST(FlightController, FourfoldFlightSpeedAlsoSpeedsUpTheClock) {
   FlightController controller = NewFlightController();
   controller.Enter(FlightMode::kAircraft);
   EXPECT_EQ(controller.StepSpeed(1), "speed x2");
@@ -572,7 +572,7 @@ TEST(FlightController, FliesToPlacesByName) {
   EXPECT_NEAR(readout.aircraft->heading_rad / kRadiansPerDegree, 155.0, 1e-6);
 }
 
-TEST(FlightController, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
+TEST(FlightController, KeysTakeOffTurnAndClimbWithinAMinute) {
   RecordedCommands flight(Airport);
   FlightController& controller = flight.controller();
   Hands hands;
@@ -606,7 +606,7 @@ TEST(FlightController, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
   EXPECT_LT(turning.course->heading_rad, climbing.course->heading_rad - 0.2);
 }
 
-TEST(FlightController, ALongFrameIsNotCutShort) {
+TEST(FlightController, LongFramesAdvanceByTheirWholeTime) {
   FlightController controller = NewFlightController();
   controller.Advance({}, 7.0);
   EXPECT_EQ(Shows(controller), "2026-06-21T12:00:07Z");
@@ -621,7 +621,7 @@ std::shared_ptr<const CameraPath> AnHour() {
                                    {10.0, end, ParseInstant("2025-01-02T09:00:00Z")}});
 }
 
-TEST(FlightController, AReplayHasItsOwnTimeAndViewAndGivesTheControlsBackAtItsEnd) {
+TEST(FlightController, ReplayHasItsOwnTimeAndViewAndReturnsTheControls) {
   FlightController controller = NewFlightController();
   controller.clock().Pause(!controller.clock().paused());
   controller.Replay(AnHour());
@@ -643,7 +643,7 @@ TEST(FlightController, AReplayHasItsOwnTimeAndViewAndGivesTheControlsBackAtItsEn
   EXPECT_EQ(Shows(controller), "2025-01-02T09:00:01Z") << "real time again";
 }
 
-TEST(FlightController, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
+TEST(FlightController, ReplayOfThisFlightContinuesAtItsEnd) {
   FlightController controller = NewFlightController();
   controller.Enter(FlightMode::kAircraft);
   controller.ToggleHold(Autopilot::Hold::kHeading);
@@ -663,7 +663,7 @@ TEST(FlightController, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
   EXPECT_EQ(on.autopilot, flown.autopilot);
 }
 
-TEST(FlightController, ATrackWithInstantsSetsTheClockAndSkippingTakesItAlong) {
+TEST(FlightController, TimesOfATrackSetTheClockAlsoWhenSkipping) {
   FlightController controller = NewFlightController();
   controller.pilot().SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
       {0.0, {Place{46.0, 8.0, 1000.0}}, ParseInstant("2025-01-02T08:00:00Z")},

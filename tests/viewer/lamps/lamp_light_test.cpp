@@ -152,7 +152,7 @@ Deviation Compare(const std::vector<float>& gpu, const std::vector<double>& trut
   return Of(std::move(deviations));
 }
 
-using LampsOnTheCard = tests::Headless;
+using LampsOnGpu = tests::Headless;
 
 /// Returns the deviation in the middle band of the scene's air.
 Deviation GlowDeviation(const BothLamps& both, bool near_lamps = true) {
@@ -168,13 +168,13 @@ Deviation GlowDeviation(const BothLamps& both, bool near_lamps = true) {
   return Compare(gpu, truth);
 }
 
-TEST_F(LampsOnTheCard, GlowInClearAirAsTheRenderer) {
+TEST_F(LampsOnGpu, GlowInClearAirAsInTheRenderer) {
   const Deviation deviation = GlowDeviation(BothLamps(Night(6.0, 0.0, 1.0)));
   EXPECT_LT(deviation.mean, 1e-3) << "12 nodes for four lamps, one a spot";
   EXPECT_LT(deviation.p99, 0.01);
 }
 
-TEST_F(LampsOnTheCard, GlowInFogAroundAndUnderTheEyeAsTheRenderer) {
+TEST_F(LampsOnGpu, GlowInFogAsInTheRenderer) {
   constexpr double kBase_m = 18000.0;  // 720 scale heights up
   Scene high = Night(kBase_m + 6.0, 0.004, 25.0);
   for (Light& light : high.lights) light.height.value_m += kBase_m;
@@ -188,7 +188,7 @@ TEST_F(LampsOnTheCard, GlowInFogAroundAndUnderTheEyeAsTheRenderer) {
   }
 }
 
-TEST_F(LampsOnTheCard, FogFarBelowItsBaseIsAWallWithoutLight) {
+TEST_F(LampsOnGpu, FogFarBelowItsBaseIsOpaqueAndDark) {
   Scene scene = Night(6.0, 0.004, 7.0);
   scene.layers[0].base_height_m = 5000.0;
   const BothLamps both(scene);
@@ -203,7 +203,7 @@ TEST_F(LampsOnTheCard, FogFarBelowItsBaseIsAWallWithoutLight) {
   }
 }
 
-TEST_F(LampsOnTheCard, AnEyeInsideALampSeesAsTheRenderer) {
+TEST_F(LampsOnGpu, AnEyeInsideALampSeesTheRenderersLight) {
   Scene scene = Night(6.0, 0.004, 25.0);
   scene.lights = {LightAt(0.0, 0.0, 6.0, 1000.0)};
   scene.lights[0].radius_m = 0.5;
@@ -263,7 +263,7 @@ Deviation GroundDeviation(const BothLamps& both, bool with_slopes) {
   return Of(std::move(deviations));
 }
 
-TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
+TEST_F(LampsOnGpu, LightTheGroundAsInTheRenderer) {
   const BothLamps clear(Night(6.0, 0.0, 1.0)), fog(Night(6.0, 0.004, 25.0));
   EXPECT_LT(GroundDeviation(clear, false).p99, 0.01);
   const Deviation level = GroundDeviation(fog, false), slopes = GroundDeviation(fog, true);
@@ -274,7 +274,7 @@ TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
   EXPECT_LT(slopes.p99, 0.2);
 }
 
-TEST_F(LampsOnTheCard, GroundFarFromALampAsTheRenderer) {
+TEST_F(LampsOnGpu, LightDistantGroundAsInTheRenderer) {
   for (const double north_m : {15e3, 40e3, 100e3, 180e3}) {
     Scene scene = Night(6.0, 0.0, 1.0);
     scene.lights = {LightAt(north_m, 0.0, 40.0, 1e6)};
@@ -284,7 +284,7 @@ TEST_F(LampsOnTheCard, GroundFarFromALampAsTheRenderer) {
   }
 }
 
-TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
+TEST_F(LampsOnGpu, ARidgeShadesGroundAndAirBehindIt) {
   Scene scene = Night(6.0, 0.0, 1.0);
   scene.lights = {LightAt(400.0, 0.0, 5.0, 1000.0)};
   const BothLamps both(scene, Ridge(scene));
@@ -335,7 +335,7 @@ TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
   EXPECT_LT(worst, 0.08) << "12 nodes find the edge of the shade";
 }
 
-TEST_F(LampsOnTheCard, ThePlanetShadesTheAirBeyondItsHorizon) {
+TEST_F(LampsOnGpu, ThePlanetShadesTheAirBeyondItsHorizon) {
   Scene scene = Night(2.0, 0.0, 1.0);
   scene.lights = {LightAt(40e3, 0.0, 2.0, 1e9)};
   const BothLamps both(scene);
@@ -383,7 +383,7 @@ std::vector<tests::Arguments<float>> OnRidge(const LampStage& stage, const glm::
   return points;
 }
 
-TEST_F(LampsOnTheCard, GroundIsLitWhereTheRenderersShadowRaysSaySo) {
+TEST_F(LampsOnGpu, GroundIsLitWhereShadowRaysReachTheLamp) {
   Scene scene = Night(6.0, 0.0, 1.0);
   scene.lights = {LightAt(400.0, 0.0, 5.0, 1000.0)};
   BothLamps both(scene, Ridge(scene));
@@ -407,7 +407,7 @@ TEST_F(LampsOnTheCard, GroundIsLitWhereTheRenderersShadowRaysSaySo) {
   EXPECT_LT(wrong(), 2e-3) << "corners of shade";
 }
 
-TEST_F(LampsOnTheCard, AMeasuredLampLightsTheGroundAsTheRenderer) {
+TEST_F(LampsOnGpu, AMeasuredLampLightsTheGroundAsInTheRenderer) {
   Scene scene = Night(6.0, 0.0, 1.0);
   const BothLamps both(scene);
   LampProfile profile;
@@ -426,7 +426,7 @@ TEST_F(LampsOnTheCard, AMeasuredLampLightsTheGroundAsTheRenderer) {
   }
 }
 
-TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
+TEST_F(LampsOnGpu, SixtyFourNodesShineLikeManyLamps) {
   Scene scene = Night(6.0, 0.0, 1.0);
   scene.lights.clear();
   constexpr int kLamps = tests::ScaledDown(300, 150);
@@ -443,7 +443,7 @@ TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
          "missing";
 }
 
-TEST(LampView, OfAnEyeFarFromTheSceneTurnsItsDirectionsIntoEastNorthUpThere) {
+TEST(LampView, OfADistantEyeUsesEastNorthUpThere) {
   const LocalFrame ground(kWgs84, Place{46.5, 8.0, 0.0});
   const Place place{47.0, 9.0, 1000.0};
   const LampView view = LampViewFrom(ground, place, kLitPixel_rad);
@@ -454,7 +454,7 @@ TEST(LampView, OfAnEyeFarFromTheSceneTurnsItsDirectionsIntoEastNorthUpThere) {
       << "a kilometre over the eye is up there";
 }
 
-TEST_F(LampsOnTheCard, ALandingLightMovesWithTheEye) {
+TEST_F(LampsOnGpu, ALandingLightMovesWithTheEye) {
   BothLamps both(Night(6.0, 0.0, 1.0));
   LandingLight landing;
   both.lamps.SetLandingLight(landing);
@@ -484,7 +484,7 @@ TEST(LampShadowFieldFollower, MakesEveryPlanOnceAndInOrder) {
   EXPECT_EQ(made, 5);
 }
 
-TEST(LampShadowFieldFollower, NoLampsAreSettledAtOnce) {
+TEST(LampShadowFieldFollower, IsReadyAtOnceWithoutLamps) {
   LampShadowFieldFollower follower(0, [](std::size_t) { return LampShadowField{}; });
   follower.WaitUntilReady();
   EXPECT_TRUE(follower.plans().empty());
@@ -589,7 +589,7 @@ double Mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-TEST_F(LampPicture, LampsAndTheirGlowAreThoseOfTheRendererPixelByPixel) {
+TEST_F(LampPicture, LampsAndGlowEqualTheRenderersInEveryPixel) {
   LampNight night;
   const BandColour colour(night.scene.medium.wavelengths_nm);
   const LampLight light(night.scene, night.ground, night.scene.medium, colour);
@@ -611,7 +611,7 @@ TEST_F(LampPicture, LampsAndTheirGlowAreThoseOfTheRendererPixelByPixel) {
   EXPECT_LT(deviations[deviations.size() * 999 / 1000], 0.02);
 }
 
-TEST_F(LampPicture, ALatticeOfEverySecondPixelWithCoresIsTheWholePicture) {
+TEST_F(LampPicture, ALatticeOfEverySecondPixelGivesTheWholePicture) {
   LampNight night;
   const HdrImage whole = night.Paint({.nodes = 12, .step = 1});
   const std::vector<double> deviations =

@@ -68,7 +68,7 @@ std::size_t HeapBytes() {
 #endif
 }
 
-TEST_F(LandChunks, AChunkTakesTheMemoryThatItSays) {
+TEST_F(LandChunks, UseTheStatedMemory) {
   constexpr std::size_t kCount = 100;
   for (const int level : {0, 1}) {
     std::vector<LandChunk> chunks;
@@ -86,7 +86,7 @@ TEST_F(LandChunks, AChunkTakesTheMemoryThatItSays) {
   }
 }
 
-TEST_F(LandChunks, TheFinestLevelIsTheRenderersMesh) {
+TEST_F(LandChunks, FinestLevelEqualsTheRenderersMesh) {
   const TriangleMesh mesh =
       MeshFromElevation(ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid, anchor_.frame);
   std::set<std::array<std::uint32_t, 3>> cut;  // each triangle from its least corner on
@@ -120,7 +120,7 @@ TEST_F(LandChunks, TheFinestLevelIsTheRenderersMesh) {
   }
 }
 
-TEST_F(LandChunks, NeighboursShareTheirVerticesToTheBit) {
+TEST_F(LandChunks, NeighboursShareTheirVerticesExactly) {
   for (int level = 0; level < 3; ++level) {
     SCOPED_TRACE(level);
     const LandChunk west = Chunk(level, 1, 1), east = Chunk(level, 2, 1),
@@ -136,7 +136,7 @@ TEST_F(LandChunks, NeighboursShareTheirVerticesToTheBit) {
 }
 
 // The last chunk of each level ends at sample 240, which is no multiple of 16 2^k.
-TEST_F(LandChunks, WhollyTurnedAChunkLiesOnTheNextLevelsTriangles) {
+TEST_F(LandChunks, WhollyMorphedChunksLieOnTheNextLevel) {
   for (int level = 0; level + 1 < kTop; ++level) {
     for (const int at : {0, 240 / (16 << level) - (240 % (16 << level) == 0 ? 1 : 0)}) {
       SCOPED_TRACE(level);
@@ -165,7 +165,7 @@ TEST_F(LandChunks, WhollyTurnedAChunkLiesOnTheNextLevelsTriangles) {
   }
 }
 
-TEST_F(LandChunks, TheLandEndsAtTheSameRimAtEveryLevel) {
+TEST_F(LandChunks, TheLandHasTheSameRimAtEveryLevel) {
   const auto end_of = [&](int level) {
     const int last = (240 + (1 << level) - 1) >> level;
     const int chunk = (last - 1) / kChunkCells;
@@ -178,7 +178,7 @@ TEST_F(LandChunks, TheLandEndsAtTheSameRimAtEveryLevel) {
   }
 }
 
-TEST_F(LandChunks, CoarseSidesHaveOnlyVerticesOfTheNextLevelAndCoverTheSameGround) {
+TEST_F(LandChunks, CoarseSidesUseOnlyVerticesOfTheNextLevel) {
   for (const int level : {0, 1}) {
     const LandChunk chunk = Chunk(level, 3, 3);
     for (unsigned sides = 0; sides < 16; ++sides) {
@@ -204,7 +204,7 @@ TEST_F(LandChunks, CoarseSidesHaveOnlyVerticesOfTheNextLevelAndCoverTheSameGroun
   }
 }
 
-TEST_F(LandChunks, TheNextLevelsLightIsTheMeanOfItsVerticesLight) {
+TEST_F(LandChunks, LightOfTheNextLevelIsTheMeanOfItsVertices) {
   const LandChunk chunk = Chunk(1, 2, 2);
   const auto light =
       LightOfChunk(chunk, anchor_.frame, LightOfVertices{[](const LocalFrame&, auto vertices) {
@@ -228,7 +228,7 @@ TEST_F(LandChunks, TheNextLevelsLightIsTheMeanOfItsVerticesLight) {
 
 // An infinite share of a sky without light would be an infinite radiance.
 // Hard case 23.
-TEST(LightOfVertices, SharesOfADarkSkyAreFiniteHalfFloats) {
+TEST(LightOfVertices, FractionsOfADarkSkyAreFiniteHalfFloats) {
   const std::array<std::uint16_t, 4> halves = PackedShares({3e5F, 65504.0F, 1e-9F, 0.25F});
   EXPECT_EQ(glm::unpackHalf1x16(halves[0]), 65504.0F);
   EXPECT_EQ(glm::unpackHalf1x16(halves[1]), 65504.0F);
@@ -257,7 +257,7 @@ double ShareOnMesh(const ElevationGrid& grid) {
   return there / static_cast<double>(grid.height_m.size());
 }
 
-TEST(MeshGrid, ASmallMeshIsSampledAllOverFromAnywhere) {
+TEST(MeshGrid, SmallMeshesAreSampledWholeFromAnywhere) {
   for (const float half_m : {0.2F, 20.0F, 30.0F}) {
     const Terrain mesh = SlopeAt(0.0F, half_m);
     const auto grid = GridOverMesh(mesh, kFrame, kPlace, 40e3, 64);
@@ -269,7 +269,7 @@ TEST(MeshGrid, ASmallMeshIsSampledAllOverFromAnywhere) {
   }
 }
 
-TEST(MeshGrid, AMeshFarAwayIsSampledWhereItIs) {
+TEST(MeshGrid, DistantMeshesAreSampledAtTheirPlace) {
   for (const float east_m : {33e3F, 45e3F, 72e3F, -150e3F}) {
     const Terrain mesh = SlopeAt(east_m, 1000.0F);
     const auto grid = GridOverMesh(mesh, kFrame, kPlace, 40e3, 64);
@@ -281,7 +281,7 @@ TEST(MeshGrid, AMeshFarAwayIsSampledWhereItIs) {
   }
 }
 
-TEST(MeshGrid, OfAWideMeshTheSquareAroundThePlaceIsSampled) {
+TEST(MeshGrid, WideMeshesAreSampledAroundThePlace) {
   const Terrain mesh = SlopeAt(0.0F, 100e3F);
   const auto grid = GridOverMesh(mesh, kFrame, kPlace, 40e3, 65);
   ASSERT_TRUE(grid);
@@ -293,7 +293,7 @@ TEST(MeshGrid, OfAWideMeshTheSquareAroundThePlaceIsSampled) {
   EXPECT_NEAR(grid->north_rad - kPlace.latitude_rad(), 32 * grid->step_lat_rad, 1e-9);
 }
 
-TEST(MeshGrid, AtTheEdgeOfAWideMeshTheSquareLiesOnIt) {
+TEST(MeshGrid, SampledSquareStaysInsideAWideMesh) {
   const Terrain mesh = SlopeAt(150e3F, 100e3F);  // from 50 km to 250 km east
   const auto grid = GridOverMesh(mesh, kFrame, kPlace, 40e3, 65);
   ASSERT_TRUE(grid);

@@ -134,7 +134,7 @@ Misses MissesOf(const std::vector<glm::vec4>& picture, const LookOut& eye, const
   return misses;
 }
 
-TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) {
+TEST_F(LandscapePictures, DistanceAndNormalEqualTheRenderersUpToOrbit) {
   WriteTile(folder_ / "a.tif", 0, 0);
   const Place middle = PlaceOfSample(120.0, 120.0, 0.0);
   const LocalFrame frame(kWgs84, middle);
@@ -169,7 +169,7 @@ TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) 
 
 // Half a pixel off its middle a ray is as much as 0.1 % longer or shorter. From 400 km that is half
 // a kilometre of height, and another one's snow.
-TEST_F(LandscapePictures, DistanceIsThatAlongTheRayOfAPixelNotAlongItsMiddle) {
+TEST_F(LandscapePictures, DistanceIsMeasuredAlongTheRayOfAPixel) {
   WriteTile(folder_ / "a.tif", 0, 0);
   const LocalFrame frame(kWgs84, PlaceOfSample(120.0, 120.0, 0.0));
   const Terrain terrain(
@@ -185,7 +185,7 @@ TEST_F(LandscapePictures, DistanceIsThatAlongTheRayOfAPixelNotAlongItsMiddle) {
 }
 
 // With every sample drawn, the picture is the renderer's wherever nothing is left out that is seen.
-TEST_F(LandscapePictures, WhatNearLandHidesIsLeftOutAndNothingElse) {
+TEST_F(LandscapePictures, OnlyChunksHiddenByNearLandAreOmitted) {
   WriteTile(folder_ / "a.tif", 0, 0);
   const LocalFrame frame(kWgs84, PlaceOfSample(120.0, 120.0, 0.0));
   const Terrain terrain(
@@ -209,7 +209,7 @@ TEST_F(LandscapePictures, WhatNearLandHidesIsLeftOutAndNothingElse) {
 }
 
 // The choice is made on another thread.
-TEST_F(LandscapePictures, TheChunksOfAFrameAreThoseOfItsOwnView) {
+TEST_F(LandscapePictures, ChunksOfAFrameAreChosenForItsOwnView) {
   WriteTile(folder_ / "a.tif", 0, 0);
   Landscape land(Folder(), {64.0}, kWgs84);
   LookOut inwards{PlaceOfSample(60.0, 120.0, 0.0), 0.5 * kPi}, outwards = inwards;
@@ -230,7 +230,7 @@ TEST_F(LandscapePictures, TheChunksOfAFrameAreThoseOfItsOwnView) {
   }
 }
 
-TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
+TEST_F(LandscapePictures, EveryPixelBelowTheSkylineHasTerrain) {
   WriteTiles(3);
   Landscape land(Folder(), {64.0}, kWgs84);
   for (int i = 0; i < 24; i += ScaledDown(1, 3)) {
@@ -254,7 +254,7 @@ TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
   }
 }
 
-TEST_F(LandscapePictures, FlyingOverAFolderKeepsWithinItsBounds) {
+TEST_F(LandscapePictures, FlightOverAFolderKeepsItsMemoryLimits) {
   WriteTiles(6);
   LandSize size;
   size.detail = 64.0;
@@ -285,7 +285,7 @@ TEST_F(LandscapePictures, FlyingOverAFolderKeepsWithinItsBounds) {
       << "near the eye stand the samples themselves";
 }
 
-TEST_F(LandscapePictures, ThroughATelephotoLensFarLandIsFiner) {
+TEST_F(LandscapePictures, DistantLandIsFinerInATelephotoView) {
   WriteTiles(3);
   const LookOut wide{PlaceOfSample(360.0, 700.0, 4000.0), 0.0, -0.2, 1.2};
   LookOut narrow = wide;
@@ -339,7 +339,7 @@ std::size_t BytesOnTheCard() {
   return sum;
 }
 
-TEST_F(LandscapePictures, BuffersTakeWhatTheFiguresSay) {
+TEST_F(LandscapePictures, BuffersUseTheStatedMemory) {
   WriteTile(folder_ / "a.tif", 0, 0);
   const std::size_t before = BytesOnTheCard();
   Landscape land(Folder(), {96.0}, kWgs84);
@@ -352,7 +352,7 @@ TEST_F(LandscapePictures, BuffersTakeWhatTheFiguresSay) {
   EXPECT_NEAR((bytes(200) - bytes(100)) / 100.0, 37.8e3, 0.1e3) << "a slot, as LandSize has it";
 }
 
-TEST_F(LandscapePictures, ADamagedTileOfAFolderIsSaidByNameAndTheRestIsDrawn) {
+TEST_F(LandscapePictures, ADamagedTileIsReportedAndTheRestIsDrawn) {
   WriteTiles(2);
   std::filesystem::resize_file(folder_ / "tile01.tif", 60000);
   Landscape land(Folder(), {64.0}, kWgs84);
@@ -363,7 +363,7 @@ TEST_F(LandscapePictures, ADamagedTileOfAFolderIsSaidByNameAndTheRestIsDrawn) {
   EXPECT_FALSE(land.ground().HeightUnder(PlaceOfSample(300.0, 100.0, 0.0)));
 }
 
-TEST_F(LandscapePictures, ADamagedFileThatWasNamedIsRefused) {
+TEST_F(LandscapePictures, ADamagedFileIsRefused) {
   WriteTile(folder_ / "a.tif", 0, 0);
   std::filesystem::resize_file(folder_ / "a.tif", 60000);
   Landscape land({{folder_ / "a.tif"}, VoidPolicy::kFill, std::nullopt}, {64.0}, kWgs84);
@@ -373,7 +373,7 @@ TEST_F(LandscapePictures, ADamagedFileThatWasNamedIsRefused) {
 
 // Without a horizon of the terrain, three properties of a program can change: fading light,
 // moonlight and refraction.
-TEST_F(LandscapePictures, ProgramsThatMayBeNeededAreMadeOneByOne) {
+TEST_F(LandscapePictures, ProgramsNeededLaterAreMadeOneByOne) {
   WriteTile(folder_ / "a.tif", 0, 0);
   Landscape land(Folder(), {64.0}, kWgs84);
   EXPECT_FALSE(land.pass().MakeOneReady()) << "nothing has been drawn that could change";
@@ -386,7 +386,7 @@ TEST_F(LandscapePictures, ProgramsThatMayBeNeededAreMadeOneByOne) {
   EXPECT_EQ(Draw(land, eye), drawn);
 }
 
-TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
+TEST_F(LandscapePictures, NewLightReplacesTheOldWhenItIsComplete) {
   WriteTile(folder_ / "a.tif", 0, 0);
   Landscape land(Folder(), {64.0}, kWgs84);
   const LookOut eye{PlaceOfSample(120.0, 60.0, 3000.0), 3.1, -0.3};
@@ -410,7 +410,7 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
   EXPECT_NEAR(sky.w, 0.4F, 4e-4F);
 }
 
-TEST_F(LandscapePictures, EdgesOfShadeRiseAndSinkWithTheSun) {
+TEST_F(LandscapePictures, ShadowEdgesMoveWithTheSun) {
   WriteTile(folder_ / "a.tif", 0, 0);
   Landscape land(Folder(), {64.0}, kWgs84);
   const LookOut eye{PlaceOfSample(120.0, 60.0, 3000.0), 3.1, -0.3};
@@ -431,7 +431,7 @@ TEST_F(LandscapePictures, EdgesOfShadeRiseAndSinkWithTheSun) {
 }
 
 // 190 km apart: farther than one anchor reaches.
-TEST_F(LandscapePictures, FarFromWhereItBeganTheLandIsAsExact) {
+TEST_F(LandscapePictures, LandIsExactFarFromTheStart) {
   constexpr int kFar = 6000;
   WriteTile(folder_ / "a.tif", 0, 0);
   WriteTile(folder_ / "b.tif", kFar, 0);
@@ -452,7 +452,7 @@ TEST_F(LandscapePictures, FarFromWhereItBeganTheLandIsAsExact) {
 
 // Beside these tiles coarse land reaches 130 m higher than the fine land in its place: over a range
 // of heights each has the other drawn.
-TEST_F(LandscapePictures, WhatIsSettledDoesNotDependOnWhereTheEyeWasBefore) {
+TEST_F(LandscapePictures, SettledLandDoesNotDependOnTheEarlierEye) {
   WriteTiles(2);
   for (int i = 0; i < 12; i += ScaledDown(1, 4)) {
     const double height_m = 5400.0 + 15.0 * i;
@@ -478,7 +478,7 @@ auto Mountain(int column, int row, double top_m) {
 
 // From 3 km the horizon lies 196 km away. At 250 km it hides what is lower than 230 m, at 600 km
 // what is lower than 12.8 km.
-TEST_F(LandscapePictures, ThePlanetHidesWhatIsBeyondTheHorizonButNotWhatRisesOverIt) {
+TEST_F(LandscapePictures, ThePlanetHidesOnlyLandBelowItsHorizon) {
   constexpr int kEast = 7869, kNorth = -12960;  // 250 km, 600 km
   constexpr int kSamples = 101, kStride = 16;
   constexpr int kHalf = kStride * (kSamples - 1) / 2;
@@ -498,7 +498,7 @@ TEST_F(LandscapePictures, ThePlanetHidesWhatIsBeyondTheHorizonButNotWhatRisesOve
   EXPECT_EQ(pixels(0.0), 0);
 }
 
-TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
+TEST_F(LandscapePictures, NothingIsDrawnWithoutASource) {
   Landscape land({}, {96.0}, kWgs84);
   land.Relight({[](const LocalFrame&, std::span<const LandVertex> vertices) {
     return std::vector<VertexLight>(vertices.size());
@@ -510,12 +510,12 @@ TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
   EXPECT_FALSE(land.ground().HeightUnder(eye.place));
 }
 
-TEST_F(LandscapePictures, TheMadeUpRangeSaysSo) {
+TEST_F(LandscapePictures, ProceduralRangeIsNotedAsMadeUp) {
   Landscape land({{}, VoidPolicy::kFill, Place{0.81, 0.14, 0.0}}, {64.0}, kWgs84);
   EXPECT_THAT(land.PollNotes(), ElementsAre(HasSubstr("made up")));
 }
 
-TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
+TEST_F(LandscapePictures, AMeshIsDrawnCompletely) {
   WriteText(folder_ / "hill.obj",
             "v -5000 -5000 100\nv 5000 -5000 100\nv 5000 5000 300\nv -5000 5000 300\n"
             "f 1 2 3\nf 1 3 4\n");

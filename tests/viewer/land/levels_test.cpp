@@ -79,7 +79,7 @@ std::vector<LevelCase> Cases(const LandTiles& tiles, const ChunkTree& tree) {
                  [](double column, double row) { return PlaceOfSample(column, row, 0.0); });
 }
 
-TEST_F(LevelRanges, ChunksCoverAllLandOnce) {
+TEST_F(LevelRanges, ChunksCoverAllLandExactlyOnce) {
   for (const LevelCase& each : Cases(*tiles_, *tree_)) {
     double area = 0.0;
     for (const DrawnChunk& chunk : each.drawn) {
@@ -141,7 +141,7 @@ int CheckBorders(const ChunkTree& tree, const std::vector<LevelCase>& cases) {
   return borders;
 }
 
-TEST_F(LevelRanges, WhereTwoLevelsMeetTheFinerHasTurnedAndTheCoarserHasNotBegun) {
+TEST_F(LevelRanges, AtABorderTheFinerLevelIsMorphedAndTheCoarserIsNot) {
   EXPECT_GT(CheckBorders(*tree_, Cases(*tiles_, *tree_)), 500) << "there was something to test";
 }
 
@@ -169,7 +169,7 @@ TEST_P(PolarLevels, LevelsMeetAroundThePoleAndAcrossTheDateLine) {
 }
 
 // Hard case 17.
-TEST_P(PolarLevels, LandIsAsNearAcrossThePoleAsOnThisSide) {
+TEST_P(PolarLevels, DistanceAcrossThePoleIsTheShortWay) {
   const auto all = [](const ChunkKey&) { return true; };
   for (const double longitude : {0.0, 75.0, 180.0}) {
     const LandEye eye(tiles_->lattice(), CheckedPlace({GetParam() * 89.99, longitude, 0.0}), 0.0,
@@ -214,7 +214,7 @@ double LeastChord(const LandEye& eye, const LatticeArea& area, double north_rad)
 }
 
 // Hard case 17.
-TEST_P(PolarLevels, TheDistanceOfAChunkIsThatOfItsNearestPoint) {
+TEST_P(PolarLevels, DistanceOfAChunkIsThatOfItsNearestPoint) {
   const LandLattice& lattice = tiles_->lattice();
   for (int i = 0; i < 200; ++i) {
     const auto random = [&](double factor) { return std::fmod(factor * (i + 1), 1.0); };
@@ -231,7 +231,7 @@ TEST_P(PolarLevels, TheDistanceOfAChunkIsThatOfItsNearestPoint) {
   }
 }
 
-TEST_F(LevelRanges, ALevelTurnsOverAStretchThatIsNotShort) {
+TEST_F(LevelRanges, LevelsMorphOverALongStretch) {
   for (const LevelCase& each : Cases(*tiles_, *tree_)) {
     for (const LevelRange& range : each.ranges) {
       if (range.end_m > 0.0 && range.end_m < 1e29) {
@@ -241,7 +241,7 @@ TEST_F(LevelRanges, ALevelTurnsOverAStretchThatIsNotShort) {
   }
 }
 
-TEST_F(LevelRanges, WhatIsNotThereIsNeitherDrawnNorHidesWhatIs) {
+TEST_F(LevelRanges, AbsentChunksAreNotDrawnAndHideNothing) {
   const LandEye eye = EyeAt(360.0, 360.0, 0.0);
   const ChunkKey missing{1, 10, 11};
   const auto is_there = [&](const ChunkKey& key) { return key != missing; };
@@ -256,7 +256,7 @@ TEST_F(LevelRanges, WhatIsNotThereIsNeitherDrawnNorHidesWhatIs) {
   EXPECT_LE(ranges[1].end_m, tree_->Distance(missing.Parent(), eye));
 }
 
-TEST_F(LevelRanges, NearTheEyeEverySampleIsDrawnAndFromAboveFewer) {
+TEST_F(LevelRanges, EverySampleIsDrawnNearTheEyeAndFewerFromAbove) {
   const LandEye low = EyeAt(360.0, 360.0, 0.0);
   const auto near =
       DrawnChunks(*tree_, low, RangesOf(DemandOf(*tree_, low, 96.0, All).reach_m, low), All);
@@ -376,7 +376,7 @@ class DrawnSurface {
 
 class LandInFlight : public LandFolder {};
 
-TEST_F(LandInFlight, NothingPops) {
+TEST_F(LandInFlight, SurfaceNeverJumps) {
   WriteTiles(3);
   const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
   DrawnSurface surface(heights);
@@ -416,7 +416,7 @@ std::vector<LandSkyline::Between> Wall() {
   return wall;
 }
 
-TEST(LandSkyline, AWallHidesWhatStandsBehindItAndIsLower) {
+TEST(LandSkyline, AWallHidesLowerLandBehindIt) {
   LandSkyline skyline;
   skyline.Add(Wall());
   EXPECT_FALSE(skyline.Hides({0.0, 500.0, 0.0}, 10.0, 0.0)) << "before it";
@@ -428,7 +428,7 @@ TEST(LandSkyline, AWallHidesWhatStandsBehindItAndIsLower) {
   EXPECT_FALSE(skyline.Hides({0.0, -3000.0, 0.0}, 50.0, 0.0)) << "opposite";
 }
 
-TEST(LandSkyline, TheLowerOfTwoLevelsCounts) {
+TEST(LandSkyline, UsesTheLowerOfTwoLevels) {
   std::vector<LandSkyline::Between> turning = Wall();
   for (LandSkyline::Between& vertex : turning) vertex.other.z = 20.0;
   LandSkyline skyline;
@@ -437,14 +437,14 @@ TEST(LandSkyline, TheLowerOfTwoLevelsCounts) {
   EXPECT_TRUE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 20.0));
 }
 
-TEST(LandSkyline, AWallThatIsFartherHidesNothing) {
+TEST(LandSkyline, AWallHidesNothingInFrontOfIt) {
   LandSkyline skyline;
   skyline.Add(Wall());
   EXPECT_FALSE(skyline.Hides({0.0, 1400.0, 0.0}, 50.0, -10.0)) << "the wall's ends are 1414 m away";
   EXPECT_TRUE(skyline.Hides({0.0, 1500.0, 0.0}, 50.0, -10.0));
 }
 
-TEST(LandSkyline, SeenFromAboveTheGroundBehindACrestIsHiddenToo) {
+TEST(LandSkyline, ACrestHidesGroundBehindItFromAbove) {
   std::vector<LandSkyline::Between> crest = Wall();
   for (LandSkyline::Between& vertex : crest) {
     vertex.one.z = -100.0;

@@ -150,9 +150,9 @@ LayerDeviation Compared(const BothLayers& both) {
           largest};
 }
 
-using LayerOnTheCard = tests::Headless;
+using LayerOnGpu = tests::Headless;
 
-TEST_F(LayerOnTheCard, IsThatOfTheRendererWhereverItLies) {
+TEST_F(LayerOnGpu, EqualsTheRenderersAtAnyAltitude) {
   struct Case {
     const char* where;
     std::shared_ptr<const ExponentialLayer> layer;
@@ -169,7 +169,7 @@ TEST_F(LayerOnTheCard, IsThatOfTheRendererWhereverItLies) {
   }
 }
 
-TEST_F(LayerOnTheCard, IsThatOfTheRendererAtSunsetAndAfter) {
+TEST_F(LayerOnGpu, EqualsTheRenderersAtSunsetAndAfter) {
   for (const double elevation_rad : {0.0, -0.05}) {
     const LayerDeviation deviation =
         Compared(BothLayers(DropletsOf(0.02, 60.0, 0.0), 10.0, ToSun(elevation_rad)));
@@ -178,7 +178,7 @@ TEST_F(LayerOnTheCard, IsThatOfTheRendererAtSunsetAndAfter) {
   }
 }
 
-TEST_F(LayerOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
+TEST_F(LayerOnGpu, LeavesAsMuchLightOnTheGroundAsTheRenderer) {
   const BothLayers both(DropletsOf(0.02, 60.0, 0.0), 10.0);
   std::vector<tests::Arguments<float>> points;
   for (const double altitude : {1.0, 20.0, 60.0, 150.0, 400.0}) {
@@ -200,13 +200,13 @@ TEST_F(LayerOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
   }
 }
 
-TEST(LayerMap, ServesWhileTheEyeStandsAndNotWhenItHasRisen) {
+TEST(LayerMap, IsReusedUntilTheEyeRises) {
   const EyeUnderLight made{10.0, Unrefracted(kToSun), kLayerSunRadius_rad};
   EXPECT_TRUE(Serves(made, {12.0, Unrefracted(kToSun), kLayerSunRadius_rad}, 60.0));
   EXPECT_FALSE(Serves(made, {100.0, Unrefracted(kToSun), kLayerSunRadius_rad}, 60.0));
 }
 
-TEST_F(LayerOnTheCard, ReachesADepthWhereItHasThatDepthForAnyEye) {
+TEST_F(LayerOnGpu, FindsTheDistanceOfAnOpticalDepthForAnyEye) {
   const std::string ray = "vec3(a[0], a[1], a[2])";
   const std::string whole = "MediaDepthTo(" + ray + ", a[3])";
   for (const double eye_m : {10.0, 2e3, 2e4, 4e5, 3.6e7}) {
@@ -242,7 +242,7 @@ std::string LightInLayer() {
          km + ".z), vec4(" + km + ".y)).x";
 }
 
-TEST_F(LayerOnTheCard, StretchesDimALightThatRisesEvenlyAsTheLayerDoes) {
+TEST_F(LayerOnGpu, StretchesDimLightWithinEightPercent) {
   for (const std::shared_ptr<const ExponentialLayer>& layer :
        {DropletsOf(0.002, 80.0, 0.0),
         DropletsOf(0.013, std::numeric_limits<double>::infinity(), 0.0)}) {

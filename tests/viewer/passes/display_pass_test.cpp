@@ -50,7 +50,7 @@ class DisplayPassTest : public tests::HeadlessTile {
 };
 
 // The sun stands over a ridge.
-TEST_F(DisplayPassTest, LowQualityShowsWhatMediumDoes) {
+TEST_F(DisplayPassTest, LowQualityLooksLikeMedium) {
   const DisplayImage low = Shown(Quality::kLow), medium = Shown(Quality::kMedium);
   ASSERT_EQ(low.rgb.size(), medium.rgb.size());
   std::vector<int> off;
@@ -127,7 +127,7 @@ Channels BrightChannels(const DisplayImage& full, const DisplayImage& small) {
   return channels;
 }
 
-TEST_F(SmallPictures, StarsAreAsSharpAsTheScreen) {
+TEST_F(SmallPictures, StarsHaveTheResolutionOfTheScreen) {
   const Window night{BareScene(2000.0, 180.0, 30.0, 40.0), ParseInstant("2026-01-15T22:00:00Z"),
                      -8.0};
   const DisplayImage full = Shown(night, {Quality::kHigh, 1.0});
@@ -159,7 +159,7 @@ TEST_F(SmallPictures, ALandingLightInFogHasNoSteps) {
 }
 
 // The outline of land is drawn before the sun, in a pass with a uniform block of its own.
-TEST_F(SmallPictures, TheSunInFogIsAsBrightAsOnTheScreen) {
+TEST_F(SmallPictures, TheSunInFogIsAsBrightAsAtScreenResolution) {
   const Height eye{2500.0, false};
   Window window{SceneOverTile(tests::PlaceOfSample(225.0, 215.0, 0.0),
                               CameraFromDegrees(eye, 0.0, 0.0, 0.0, 40.0)),
@@ -177,7 +177,7 @@ TEST_F(SmallPictures, TheSunInFogIsAsBrightAsOnTheScreen) {
 }
 
 // One ray a pixel against many: an edge of shade that one ray sees or does not makes stairs.
-TEST_F(SmallPictures, EdgesOfShadeAreAsWideAsTheirPixels) {
+TEST_F(SmallPictures, ShadowEdgesAreAsWideAsTheirPixels) {
   const Scene scene = RangeScene({4000.0, false}, 130.0, -25.0);
   CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, 0.0,
                  scene.camera.fov_rad};
@@ -261,7 +261,7 @@ class UpscalerTest : public tests::Headless {
   }
 };
 
-TEST_F(UpscalerTest, EdgesOfLandAreAsSharpAsTheScreen) {
+TEST_F(UpscalerTest, EdgesOfLandHaveTheResolutionOfTheScreen) {
   const RenderTarget small(kPrintWidth / kSmaller, kPrintHeight / kSmaller);
   Fill(small, [](int x, int y) { return PixelOf(At(kSmaller * (x + 0.5), kSmaller * (y + 0.5))); });
   const DepthPrepass outline(kPrintWidth, kPrintHeight);
@@ -281,7 +281,7 @@ TEST_F(UpscalerTest, EdgesOfLandAreAsSharpAsTheScreen) {
          "a hundredth is what pixels beyond an edge still count";
 }
 
-TEST_F(UpscalerTest, OnOneSurfaceLightIsInterpolated) {
+TEST_F(UpscalerTest, LightOfOneSurfaceIsInterpolated) {
   const DepthPrepass outline(kPrintWidth, kPrintHeight);
   const RenderTarget small(kPrintWidth / kSmaller, kPrintHeight / kSmaller);
   // Level ground: inverse depth falls to 0 at the horizon, here the upper rim of the picture.
@@ -344,14 +344,14 @@ TEST(AutoQuality, AFastMachineWaitsTwoSecondsForHighQuality) {
 
 // A flight's worst frame may take three times its median: half of that is left to land that
 // arrives.
-TEST(AutoQuality, TheFirstFramesOfASlowMachineAreLittleLongerThanItsUsualOnes) {
+TEST(AutoQuality, FirstFramesOfASlowMachineTakeLittleLonger) {
   for (const double full_s : {0.05, 0.1, 0.2, 0.3, 2.0}) {
     const FrameSeries run = FramesFor(full_s, 600);
     EXPECT_LT(run.longest_s, 2.0 * run.frame_s) << full_s;
   }
 }
 
-TEST(AutoQuality, FramesTakeAsLongAsWantedWhereAnyQualityDoes) {
+TEST(AutoQuality, FramesTakeTheWantedTimeIfAnyQualityCan) {
   for (const double full_s : {0.02, 0.04, 0.06, 0.1, 0.2, 0.3}) {
     const FrameSeries run = FramesFor(full_s, 6000);
     EXPECT_LT(run.frame_s, 1.16 / 30.0) << full_s;
@@ -363,7 +363,7 @@ TEST(AutoQuality, ASlowMachineGetsTheCheapestPicture) {
   EXPECT_EQ(FramesFor(2.0, 200).last, (PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand}));
 }
 
-TEST(AutoQuality, UnderHalfTheResolutionAllElseIsLeftOutFirst) {
+TEST(AutoQuality, ResolutionFallsBelowHalfOnlyAtLowQuality) {
   for (const double full_s : {0.08, 0.1, 0.12, 0.15, 0.2, 0.3, 0.4, 2.0}) {
     AutoQuality quality(1.0 / 30.0);
     for (int frame = 0; frame < 400; ++frame) {
@@ -375,20 +375,20 @@ TEST(AutoQuality, UnderHalfTheResolutionAllElseIsLeftOutFirst) {
   }
 }
 
-TEST(AutoQuality, RaysOfShaftsAndLampsAreAsFarApartOnTheScreen) {
+TEST(AutoQuality, SpacingOfRaysOnTheScreenIsKept) {
   const PaintSizes half = SizesOf(PaintedQuality{Quality::kLow, 0.5, Saving::kNearLand});
   const PaintSizes quarter = SizesOf(PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand});
   EXPECT_EQ(2 * quarter.lamps.step, half.lamps.step);
   EXPECT_EQ(2 * quarter.shade.detail.scale, half.shade.detail.scale);
 }
 
-TEST(AutoQuality, ThreeHugeFramesAreAnsweredAtOnce) {
+TEST(AutoQuality, ReactsToThreeVeryLongFrames) {
   AutoQuality quality(1.0 / 30.0);
   for (int frame = 0; frame < 3; ++frame) quality.Record(0.6);
   EXPECT_EQ(quality.painted(), (PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand}));
 }
 
-TEST(AutoQuality, AFrameInWhichADriverFinishesAProgramChangesNothing) {
+TEST(AutoQuality, IgnoresOneLongFrame) {
   AutoQuality quality(1.0 / 30.0);
   const PaintedQuality first = quality.painted();
   quality.Record(0.7);
@@ -398,7 +398,7 @@ TEST(AutoQuality, AFrameInWhichADriverFinishesAProgramChangesNothing) {
   }
 }
 
-TEST(QualityRule, IsReadFromItsName) {
+TEST(QualityRule, IsParsedFromItsName) {
   EXPECT_EQ(QualityRuleFromText("auto").fixed, std::nullopt);
   EXPECT_EQ(QualityRuleFromText("reference").fixed, Quality::kReference);
   EXPECT_NE(tests::FaultOf([] { return QualityRuleFromText("best"); }).find("--quality"),

@@ -53,7 +53,7 @@ double ShareOfRow(const StarPoint& star, int i) {
   return static_cast<double>(i < 4 ? star.up[i] : star.last.y);
 }
 
-TEST(StarPoints, PixelsAreThoseOfTheRendererWithItsRadianceAtEverySize) {
+TEST(StarPoints, HaveTheRenderersPixelsAndRadianceAtEverySize) {
   const Scene scene = SkyScene();
   const std::vector<StarLight> lights{StarAt(31.3, 128.7, 2e-6), StarAt(20.0, 150.0, 1e-6),
                                       StarAt(9.1, 172.4, 5e-7)};
@@ -86,7 +86,7 @@ TEST(StarPoints, PixelsAreThoseOfTheRendererWithItsRadianceAtEverySize) {
   }
 }
 
-TEST(StarPoints, ThoseTooFaintBehindTheEyeOrBehindTheMoonAreLeftOut) {
+TEST(StarPoints, OmitFaintAndHiddenStars) {
   const PaintedView view = ViewOf(SkyScene(), 320, 180);
   EXPECT_EQ(PointsOf(view, {StarAt(20.0, 150.0, 1e-8)}, 2e-8).size(), 0U);
   EXPECT_EQ(PointsOf(view, {StarAt(-20.0, 330.0, 1e-6)}).size(), 0U);
@@ -98,7 +98,7 @@ TEST(StarPoints, ThoseTooFaintBehindTheEyeOrBehindTheMoonAreLeftOut) {
 }
 
 // Tiles at the corners are seen obliquely.
-TEST(StarPoints, AViewAndItsTilesHaveAllStarsBetweenTheirSides) {
+TEST(StarPoints, TilesTogetherHaveAllStarsOfTheView) {
   const PaintedView whole = ViewOf(SkyScene(), 320, 180);
   const ViewAxes axes = AxesOf(whole);
   std::vector<StarLight> stars;
@@ -133,7 +133,7 @@ TEST(StarPoints, AViewAndItsTilesHaveAllStarsBetweenTheirSides) {
   EXPECT_EQ(in_tiles, seen);
 }
 
-TEST(StarPoints, TheSkyTurnsWestwardsAboutThePoleOnceASiderealDay) {
+TEST(StarPoints, SkyTurnsWestwardsOncePerSiderealDay) {
   const double latitude = 46.5 * kRadiansPerDegree;
   const glm::dvec3 pole(0.0, std::cos(latitude), std::sin(latitude));
   EXPECT_NEAR(glm::length(TurnOfSky(latitude, 7000.0) * pole - pole), 0.0, 1e-14);
@@ -142,7 +142,7 @@ TEST(StarPoints, TheSkyTurnsWestwardsAboutThePoleOnceASiderealDay) {
   EXPECT_NEAR(glm::length(TurnOfSky(latitude, 86164.0905) * south - south), 0.0, 1e-12);
 }
 
-TEST(StarPoints, AListOfHalfAMinuteAgoStandsWhereTheNextOneDoes) {
+TEST(StarPoints, RotatedListAgreesWithTheNextList) {
   const Place place{46.5, 8.0, 2000.0};
   const BandColour colour({440.0, 490.0, 550.0, 630.0});
   const RefractedView view(MediumPreset("earth"), place.height_m);
@@ -161,7 +161,7 @@ TEST(StarPoints, AListOfHalfAMinuteAgoStandsWhereTheNextOneDoes) {
   EXPECT_GT(seen, 5);
 }
 
-TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
+TEST(StarPoints, LowStarsOfARotatedListAgreeWithTheNextList) {
   const BandColour colour({440.0, 490.0, 550.0, 630.0});
   for (const double height_m : {2.0, 10e3}) {
     const Place place = CheckedPlace({46.5, 8.0, height_m});
@@ -184,7 +184,7 @@ TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
 
 // --- the night sky ---
 
-TEST(NightSkyMap, LampsOfTownsAreInTheAirAsTheRendererHasThem) {
+TEST(NightSkyMap, SkyglowOfTownsEqualsTheRenderers) {
   const Place eye{46.5, 8.0, 500.0};
   const UtcTime now{61058, 73800.0};
   const Medium medium = MediumPreset("earth");
@@ -200,7 +200,7 @@ TEST(NightSkyMap, LampsOfTownsAreInTheAirAsTheRendererHasThem) {
   EXPECT_GT(city.level.y, 10.0F * dark.level.y);
 }
 
-TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
+TEST(NightSkyMap, InterpolatedSkyEqualsTheRenderers) {
   const Place eye{46.5, 8.0, 3000.0};
   const UtcTime now{61058, 73800.0};
   const Medium medium = MediumPreset("earth");
@@ -256,7 +256,7 @@ double BeamIlluminance(const DistantLight& light, const AirOfSky& air, double al
   return air.colour.Xyz(InDouble(air.air->BeamLeft(altitude_m, mu) * light.irradiance))[1];
 }
 
-TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
+TEST(LightsOfSky, ShadowsOfTheSecondLightAreInvisibleEveryEvening) {
   const Place eye{46.5, 8.0, 2000.0};
   const AirOfSky air(std::make_shared<const SolvedAir>(
       OnOsculatingSphere(MediumPreset("earth"), eye.latitude_rad()), AirSolution::kDraft));
@@ -284,7 +284,7 @@ DistantLight LightAt(double elevation_rad) {
 }
 
 // Ground is lit if the upper limb is above its horizon, which the height lowers.
-TEST(HasSetOnGround, OfALightOfWhichNoGroundInReachSeesTheLimb) {
+TEST(HasSetOnGround, IsTrueIfNoGroundInViewSeesTheLimb) {
   constexpr double kEarth_m = 6.37e6, kSummit_m = 8849.0;
   const auto dip = [](double height_m) { return std::acos(kEarth_m / (kEarth_m + height_m)); };
   int set = 0, risen = 0;
@@ -305,7 +305,7 @@ TEST(HasSetOnGround, OfALightOfWhichNoGroundInReachSeesTheLimb) {
   EXPECT_GT(risen, 40);
 }
 
-TEST(LightsOfSky, WhenTheMoonIsFirstNoSummitIsLitByTheSun) {
+TEST(LightsOfSky, TheSunLightsNoSummitWhenTheMoonIsFirst) {
   constexpr double kHighestSummit_m = 8849.0, kRadius_m = 6371e3;
   const double dip = std::acos(kRadius_m / (kRadius_m + kHighestSummit_m));
   const Place eye{46.5, 8.0, 2000.0};

@@ -44,9 +44,9 @@ HdrImage Painted(const Scene& scene, const PaintedView& view) {
   return painter.picture().Read();
 }
 
-using RefractedOnCard = tests::Headless;
+using RefractionOnGpu = tests::Headless;
 
-TEST_F(RefractedOnCard, LandIsDisplacedAsByTheFormulaThatIsReference) {
+TEST_F(RefractionOnGpu, LandIsDisplacedAsByTheReferenceFormula) {
   const double eye_m = 3000.0;
   const LandBend bend = LandBendOf(GentleAirOf(MediumPreset("earth")), eye_m);
   const auto vec4_of = [](double x, double y, double z, double w) {
@@ -87,7 +87,7 @@ TEST_F(RefractedOnCard, LandIsDisplacedAsByTheFormulaThatIsReference) {
   }
 }
 
-TEST(RefractedDisk, BetweenNodesItIsThatOfTheRays) {
+TEST(RefractedDisk, InterpolatedNodesAgreeWithTheRays) {
   const Medium medium = MediumPreset("earth");
   constexpr double kRadius = 16.0 * kArcMinute;
   for (const double height_m : {2.0, 10e3}) {
@@ -111,7 +111,7 @@ TEST(RefractedDisk, BetweenNodesItIsThatOfTheRays) {
   }
 }
 
-TEST(RefractedDisk, HighDisksAndWideViewsHaveRoundOnes) {
+TEST(RefractedDisk, HighDisksAndWideViewsNeedNone) {
   const auto air = std::make_shared<const SolvedAir>(MediumPreset("earth"), AirSolution::kDraft);
   constexpr double kRadius = 16.0 * kArcMinute;
   RefractedDiskFollower follower;
@@ -121,7 +121,7 @@ TEST(RefractedDisk, HighDisksAndWideViewsHaveRoundOnes) {
       << "its halves move by 3' against each other";
 }
 
-TEST(RefractedDisk, OneThatIsKeptCoversTheDiskThatHasMoved) {
+TEST(RefractedDisk, AKeptOneCoversTheMovedDisk) {
   const auto air = std::make_shared<const SolvedAir>(MediumPreset("earth"), AirSolution::kDraft);
   constexpr double kRadius = 16.0 * kArcMinute, kElevation = 2.0 * 60.0 * kArcMinute;
   RefractedDiskFollower follower;
@@ -138,7 +138,7 @@ TEST(RefractedDisk, OneThatIsKeptCoversTheDiskThatHasMoved) {
   EXPECT_LT(moved, 0.25 * kRadius) << "the nodes reach a quarter of the radius farther";
 }
 
-TEST(ViewBend, IsOffWhereNothingMovesByHalfAPixel) {
+TEST(ViewBend, IsOffIfNothingMovesByHalfAPixel) {
   const Medium medium = MediumPreset("earth");
   const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const Scene near = BareScene(20.0, 0.0, 0.0, 60.0);
@@ -148,7 +148,7 @@ TEST(ViewBend, IsOffWhereNothingMovesByHalfAPixel) {
   EXPECT_TRUE(BendOf(ViewFrom(high, noon, 640, 360), medium, 0.0)) << "the horizon is, by 12'";
 }
 
-TEST(ViewBend, IsOnWhereOnlyPixelsAtTheEdgeAreSmall) {
+TEST(ViewBend, IsOnIfPixelsAtTheEdgeAreSmallEnough) {
   const Medium medium = MediumPreset("earth");
   const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
   const Scene wide = BareScene(20.0, 0.0, 0.0, 120.0);
@@ -161,7 +161,7 @@ TEST(ViewBend, IsOnWhereOnlyPixelsAtTheEdgeAreSmall) {
   EXPECT_NEAR(LeastPixelAngle(part), LeastPixelAngle(whole), 1e-12) << "both have that corner";
 }
 
-TEST_F(RefractedOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
+TEST_F(RefractionOnGpu, SettingSunAndSeaAreWhereTheRendererHasThem) {
   Scene scene = BareScene(20.0, 306.0, 0.15, 1.2);
   scene.ground.kind = GroundCover::Kind::kWater;
   constexpr int kAcross = 64, kDown = 48;
@@ -199,7 +199,7 @@ TEST_F(RefractedOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
 
 using RefractedPeak = tests::HeadlessWith<TemporaryFolder>;
 
-TEST_F(RefractedPeak, BehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
+TEST_F(RefractedPeak, BehindTheHorizonAppearsWhereTheRayEquationSays) {
   const Medium medium =
       OnOsculatingSphere(MediumPreset("earth"), BareScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad());
   const UtcTime noon = ParseInstant("2026-06-21T11:30:00Z");
@@ -254,7 +254,7 @@ int RowsByRays(const PaintedView& view) {
   return rows;
 }
 
-TEST(PaintedView, RowsOfThePlanetHoldAllItsRaysAndLittleElse) {
+TEST(PaintedView, RowsOfThePlanetContainItAndFewOtherRows) {
   for (const double height_m : {2.0, 10e3, 400e3, 36e6}) {
     for (const double pitch_deg : {-90.0, -40.0, -3.0, 0.0, 20.0, 70.0}) {
       for (const double roll_deg : {0.0, 30.0, 90.0, 180.0}) {

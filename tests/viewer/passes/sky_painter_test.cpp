@@ -156,7 +156,7 @@ struct BothTiles {
 
 using LandPictures = tests::HeadlessSharing<BothTiles>;
 
-TEST_F(LandPictures, AtSunsetAndInTwilightAreTheRenderers) {
+TEST_F(LandPictures, EqualTheRenderersAtSunsetAndInTwilight) {
   ExpectWithin(shared().both.Difference(shared().first), {0.0027, 0.011},
                "noise of thirty-two rays a pixel over rough ground, and tables between nodes");
   ExpectWithin(shared().both.Difference(
@@ -164,7 +164,7 @@ TEST_F(LandPictures, AtSunsetAndInTwilightAreTheRenderers) {
                {0.0004, 0.0012}, "the same");
 }
 
-TEST_F(LandPictures, ByDayAreTheRenderersFromTheGroundAndFromAnAeroplane) {
+TEST_F(LandPictures, EqualTheRenderersByDayFromGroundAndAeroplane) {
   ExpectWithin(shared().both.Difference(
                    shared().tile.View(BothTiles::kHeight, 250.0, -10.0, "2026-06-21T11:00:00Z")),
                {0.0002, 0.0008},
@@ -174,7 +174,7 @@ TEST_F(LandPictures, ByDayAreTheRenderersFromTheGroundAndFromAnAeroplane) {
                "the same, of more ground a pixel");
 }
 
-TEST_F(LandPictures, WhereSunAndMoonBothCountAreLitByBoth) {
+TEST_F(LandPictures, AreLitBySunAndMoonWhereBothMatter) {
   std::vector<std::pair<const char*, Bounds>> cases{{"2026-12-23T16:25:00Z", {0.0005, 0.002}},
                                                     {"2026-12-23T16:45:00Z", {0.0008, 0.0034}}};
   cases.resize(tests::ScaledDown(cases.size(), std::size_t{1}));
@@ -195,7 +195,7 @@ std::vector<std::string> PassesOf(SkyPainter& painter, const PaintedView& view) 
   return names;
 }
 
-TEST_F(LandPictures, MoonAndNightSkyNeedNoPassOfTheirOwn) {
+TEST_F(LandPictures, NeedNoExtraPassForMoonAndNightSky) {
   const ParityView dusk =
       shared().tile.View(BothTiles::kHeight, 270.0, -6.0, "2026-12-23T16:45:00Z");
   const PaintedView view = ViewOf(dusk.scene, shared().both.eye_m(), dusk.instant);
@@ -208,7 +208,7 @@ TEST_F(LandPictures, MoonAndNightSkyNeedNoPassOfTheirOwn) {
   EXPECT_EQ(std::count(passes.begin(), passes.end(), "picture"), 1);
 }
 
-TEST_F(LandPictures, TheSkyOfAFrameIsComputedOnce) {
+TEST_F(LandPictures, ComputeTheSkyOfAFrameOnce) {
   const PaintedView view =
       ViewOf(shared().first.scene, shared().both.eye_m(), AddSeconds(shared().first.instant, 20.0));
   SkyPainter& painter = shared().both.painter();
@@ -222,7 +222,7 @@ TEST_F(LandPictures, TheSkyOfAFrameIsComputedOnce) {
 }
 
 // The bounds are the numbers of viewer/MANUAL.md, Limits.
-TEST_F(LandPictures, WithGlossAndLampsAreWithinTheNumbersOfTheManual) {
+TEST_F(LandPictures, KeepTheErrorsOfTheManualWithGlossAndLamps) {
   struct Case {
     const char* name;
     ParityView view;
@@ -256,7 +256,7 @@ TEST_F(LandPictures, WithGlossAndLampsAreWithinTheNumbersOfTheManual) {
 }
 
 // A new moon stands 7 degrees beside the sun, and the pixels are 2.4 degrees wide.
-TEST_F(SkyPainterTest, NoPixelGetsTheLightOfSunAndMoonTwice) {
+TEST_F(SkyPainterTest, NoPixelReceivesADiskTwice) {
   Scene scene = BareScene(100.0, 180.0, 60.0, 90.0);
   scene.place = {46.5, 8.0, 0.0};
   const PaintedView view = ViewOf(scene, 100.0, ParseInstant("2026-06-15T11:30:00Z"), {48, 27});
@@ -340,7 +340,7 @@ struct BareNoon {
 using DisksInTheSky = tests::HeadlessSharing<BareNoon>;
 
 // Hard case 32.
-TEST_F(DisksInTheSky, HaveTheirLightInPicturesOfAnySize) {
+TEST_F(DisksInTheSky, HaveTheRightIlluminanceAtAnyPictureSize) {
   LightOfDisks light(shared().painter, shared().view);
   const SunInSky sun = light.sky().sun;
   const glm::dvec3 to_sun = DirectionOf(sun).seen;
@@ -365,7 +365,7 @@ TEST_F(DisksInTheSky, HaveTheirLightInPicturesOfAnySize) {
   }
 }
 
-TEST_F(DisksInTheSky, HaveTheirLightInPanoramas) {
+TEST_F(DisksInTheSky, HaveTheRightIlluminanceInPanoramas) {
   LightOfDisks light(shared().painter, shared().view);
   const SunInSky sun = light.sky().sun;
   const glm::dvec3 to_sun = DirectionOf(sun).seen;
@@ -382,7 +382,7 @@ TEST_F(DisksInTheSky, HaveTheirLightInPanoramas) {
   }
 }
 
-TEST_F(DisksInTheSky, OfAFullMoonAndACrescentHaveTheirLight) {
+TEST_F(DisksInTheSky, OfFullMoonAndCrescentHaveTheRightIlluminance) {
   for (const char* utc : {"2026-06-29T22:00:00Z", "2026-06-18T20:00:00Z"}) {
     PaintedView view = shared().view;
     view.now = ParseInstant(utc);
@@ -415,7 +415,7 @@ TEST_F(DisksInTheSky, HaveTheLightOfTheirVisiblePartAtTheHorizon) {
   }
 }
 
-TEST_F(LandPictures, DisksBehindLandHaveTheLightOfTheirVisiblePart) {
+TEST_F(LandPictures, HaveTheLightOfTheVisiblePartOfADiskBehindLand) {
   // A third of the sun is behind mountains, and four minutes later all of it.
   double last_lux = 0.0;
   for (const double seconds : {-120.0, 120.0}) {
@@ -514,7 +514,7 @@ TEST_F(SkyPainterTest, FlightsOverPolesAndTheDateLineAreContinuous) {
 }
 
 // Fog that absorbs nothing takes no light from a view of dark ground.
-TEST_F(SkyPainterTest, FogUnderAnyEyeIsTheRenderers) {
+TEST_F(SkyPainterTest, FogEqualsTheRenderersFromAnyHeight) {
   for (const double eye_m : {2e4, 4e5, 3.6e7}) {
     Scene scene = BareScene(eye_m, 0.0, eye_m == 4e5 ? -50.0 : -90.0, eye_m > 1e6 ? 2.0 : 20.0);
     scene.medium = MediumPreset("bruneton2017");
@@ -543,7 +543,7 @@ TEST_F(SkyPainterTest, FogUnderAnyEyeIsTheRenderers) {
   }
 }
 
-TEST_F(SkyPainterTest, FogIsTheRenderersAndShadedByMountains) {
+TEST_F(SkyPainterTest, FogShadedByMountainsEqualsTheRenderers) {
   const Tile tile;
   struct Case {
     double visibility_m, scale_height_m, base_height_m, heading;
@@ -568,7 +568,7 @@ TEST_F(SkyPainterTest, FogIsTheRenderersAndShadedByMountains) {
 }
 
 // Under the sanitizers the land is the tile, which is prepared in a tenth of the time.
-TEST_F(LandPictures, OfTheBuiltInRangeAtSunsetAreTheRenderers) {
+TEST_F(LandPictures, OfTheBuiltInRangeEqualTheRenderersAtSunset) {
   const ParityView sunset =
       tests::kSanitized ? shared().first : ViewNamed("ground, sunset, shafts");
   std::optional<BothPrograms> of_range;
@@ -578,7 +578,7 @@ TEST_F(LandPictures, OfTheBuiltInRangeAtSunsetAreTheRenderers) {
 }
 
 // Over Burgos with nine tenths covered.
-TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
+TEST_F(SkyPainterTest, EclipsedSunEqualsTheRenderers) {
   const UtcTime now = ParseInstant("2026-08-12T18:23:00Z");
   // The disk has a radius of more than 2.5 pixels, and is drawn by rays in both programs.
   Scene scene = BareScene(2.0, 284.0, 9.0, tests::ScaledDown(8.0, 5.0));
@@ -594,7 +594,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
   EXPECT_NEAR(left / (1.0 - covered), 1.0, 0.02) << "of 550 nm and of the second band";
 }
 
-TEST_F(SkyPainterTest, TheMoonOfTheEarthIsNotInTheSkyOfMars) {
+TEST_F(SkyPainterTest, SkyOfMarsHasNoMoonOfTheEarth) {
   const UtcTime now = ParseInstant("2026-06-29T22:00:00Z");
   Scene scene = BareScene(300.0, 0.0, 0.0, 20.0);
   const MoonPosition moon = ApparentMoonAt(scene.place, now, AlmanacAir());
@@ -610,7 +610,7 @@ TEST_F(SkyPainterTest, TheMoonOfTheEarthIsNotInTheSkyOfMars) {
   }
 }
 
-TEST(FrameSky, OnMarsThereIsNeitherAMoonNorAnEclipseNorAnotherLight) {
+TEST(FrameSky, OfMarsHasNeitherMoonNorEclipse) {
   const AirOfSky mars(std::make_shared<const SolvedAir>(MediumPreset("mars"), AirSolution::kDraft));
   const Place burgos{42.3439, -3.6969, 0.0};
   const FrameSky sky = FrameSkyAt(burgos, ParseInstant("2026-08-12T18:23:00Z"), mars);
@@ -682,7 +682,7 @@ class RangeInTime {
 using RangeInTimePictures = tests::HeadlessSharing<RangeInTime>;
 
 // From noon to dusk with a moon and on, as the keys F5 to F9 jump.
-TEST_F(RangeInTimePictures, AfterAJumpEachFrameIsLitByTheNewSun) {
+TEST_F(RangeInTimePictures, EachFrameAfterAJumpIsLitByTheNewSun) {
   std::vector<const char*> jumps{"2026-12-23T16:30:00Z", "2026-12-24T11:00:00Z",
                                  "2026-12-23T22:00:00Z"};
   jumps.resize(tests::ScaledDown(jumps.size(), std::size_t{1}));
@@ -697,7 +697,7 @@ TEST_F(RangeInTimePictures, AfterAJumpEachFrameIsLitByTheNewSun) {
 }
 
 // From the last sun into the night, at 25 frames a second of time that runs 600 times as fast.
-TEST_F(RangeInTimePictures, SixHundredTimesAsFastDuskIsLitByItsSun) {
+TEST_F(RangeInTimePictures, DuskAt600TimesSpeedIsLitByItsSun) {
   UtcTime now = ParseInstant("2026-12-23T15:44:00Z");
   static_cast<void>(shared().Settled(now));
   constexpr int kFrames = tests::ScaledDown(72, 8), kChecked = tests::ScaledDown(24, 8);
@@ -710,7 +710,7 @@ TEST_F(RangeInTimePictures, SixHundredTimesAsFastDuskIsLitByItsSun) {
 }
 
 // Hard case 5.
-TEST_F(SkyPainterTest, FromAnAeroplaneAndFromOrbitTheSkyIsTheRenderers) {
+TEST_F(SkyPainterTest, SkyEqualsTheRenderersFromAeroplaneAndOrbit) {
   const UtcTime now = ParseInstant("2026-06-21T06:00:00Z");
   BothPrograms both(BareScene(10e3, 160.0, -5.0, 50.0), now);
   ExpectWithin(both.Difference(ViewOf(BareScene(10e3, 160.0, -5.0, 50.0), 10e3, now)),
@@ -757,7 +757,7 @@ class DrapedLand : public tests::HeadlessTile {
   }
 };
 
-TEST_F(DrapedLand, ColoursLieWhereTheRenderersDoFromWhereverTheyAreSeen) {
+TEST_F(DrapedLand, ColoursLieWhereTheRendererHasThemInEveryView) {
   const Scene scene = DrapedScene();
   const UtcTime now = ParseInstant("2026-06-21T10:00:00Z");
   BothPrograms both(scene, now);
@@ -806,7 +806,7 @@ constexpr const char* kMoonless = "2026-01-15T23:30:00Z";
 /// Sun and moon both count.
 constexpr const char* kDuskAndMoon = "2026-12-23T16:25:00Z";
 
-TEST_F(BarePlanet, IsLitByLampsAsTheRenderersIs) {
+TEST_F(BarePlanet, IsLitByLampsAsInTheRenderer) {
   Scene scene = NightOnThePlanet(0.2);
   Light light;
   light.place = {scene.place.latitude_deg + 0.0002, scene.place.longitude_deg, 0.0};
@@ -826,7 +826,7 @@ TEST_F(BarePlanet, HasTheCoverOfTheSceneAtNight) {
   }
 }
 
-TEST_F(BarePlanet, IsSeenThroughFogAsTheRenderersIs) {
+TEST_F(BarePlanet, IsSeenThroughFogAsInTheRenderer) {
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   for (const double scale_height_m :
        tests::ScaledDown(std::vector{500.0, 50.0, kEverywhere}, {50.0, kEverywhere})) {
@@ -874,7 +874,7 @@ TEST_F(BareSky, NoPixelIsBlackOrNegativeInDaylight) {
   }
 }
 
-TEST_F(BareSky, SeveralRaysAPixelAverageToThePicture) {
+TEST_F(BareSky, SeveralRaysPerPixelAverageToThePicture) {
   const PaintedView view = BareSkyPainter::View(280.0, 40.0, 60.0);
   const HdrImage one = shared().Painted(view), four = shared().Painted(view, 4);
   int far_off = 0;
@@ -884,7 +884,7 @@ TEST_F(BareSky, SeveralRaysAPixelAverageToThePicture) {
   EXPECT_LT(far_off, static_cast<int>(one.rgb.size()) / 10) << "a smooth sky is its own average";
 }
 
-TEST_F(BareSky, AnotherPictureIsShownInstead) {
+TEST_F(BareSky, AGivenPictureIsShownInstead) {
   const PaintedView view = BareSkyPainter::View(100.0, 30.0, 60.0);
   static_cast<void>(shared().Painted(view));
   HdrImage other(5, 3);
@@ -913,7 +913,7 @@ HdrImage PictureOf(ReferencePicture& reference, int samples) {
   }
 }
 
-TEST(ReferencePicture, EndsAsTheRenderersPictureOf64Rays) {
+TEST(ReferencePicture, BecomesTheRenderersPictureOf64Rays) {
   const auto of = std::make_shared<const ReferenceScene>(
       ReferenceScene{BareScene(500.0, 80.0, 20.0, 110.0), nullptr});
   ReferencePicture reference;
@@ -930,7 +930,7 @@ TEST(ReferencePicture, EndsAsTheRenderersPictureOf64Rays) {
   EXPECT_EQ(made.rgb, SceneRenderer(of->scene).Render(camera_sample, settings).rgb);
 }
 
-TEST(ReferencePicture, OfAViewThatHasChangedNothingIsShown) {
+TEST(ReferencePicture, IsHiddenWhenTheViewHasChanged) {
   const auto of = std::make_shared<const ReferenceScene>(
       ReferenceScene{BareScene(500.0, 80.0, 20.0, 110.0), nullptr});
   ReferencePicture reference;
@@ -946,7 +946,7 @@ TEST(ReferencePicture, OfAViewThatHasChangedNothingIsShown) {
   EXPECT_GE(reference.samples(), 1) << "a clock that runs does not begin it anew at every frame";
 }
 
-TEST(ReferencePicture, SaysWhatTheRendererRefuses) {
+TEST(ReferencePicture, ReportsErrorsOfTheRenderer) {
   Scene scene = BareScene(500.0, 80.0, 20.0, 110.0);
   scene.terrain.kind = TerrainSource::Kind::kElevationModel;
   scene.terrain.file = "nowhere.tif";

@@ -44,7 +44,7 @@ HdrImage Colours() {
 
 using ToneMapPassTest = tests::Headless;
 
-TEST_F(ToneMapPassTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
+TEST_F(ToneMapPassTest, ToneCurvesEqualTheRenderersWithinOneCode) {
   const HdrImage image = Colours();
   const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
@@ -71,7 +71,7 @@ TEST_F(ToneMapPassTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
   }
 }
 
-TEST_F(ToneMapPassTest, ADraftIsAFewCodesOffAndThenExact) {
+TEST_F(ToneMapPassTest, ADraftIsOffByAFewCodesBeforeTheTableIsReady) {
   const HdrImage image = Colours();
   const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
@@ -97,7 +97,7 @@ TEST_F(ToneMapPassTest, ADraftIsAFewCodesOffAndThenExact) {
   EXPECT_LE(most_off(), 1);
 }
 
-TEST_F(ToneMapPassTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
+TEST_F(ToneMapPassTest, LooksAndWhiteBalanceEqualTheRenderersWithinOneCode) {
   const HdrImage image = Colours();
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
@@ -115,7 +115,7 @@ TEST_F(ToneMapPassTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) 
   }
 }
 
-TEST_F(ToneMapPassTest, APictureOfAnotherSizeFillsTheScreen) {
+TEST_F(ToneMapPassTest, PicturesOfAnySizeFillTheScreen) {
   HdrImage image(8, 8);
   for (auto& pixel : image.rgb) pixel = {500.0F, 800.0F, 1000.0F};
   const RenderTarget picture(8, 8, RenderTarget::Depth::kNone);
@@ -132,7 +132,7 @@ TEST_F(ToneMapPassTest, APictureOfAnotherSizeFillsTheScreen) {
 
 using ExposureMeterTest = tests::Headless;
 
-TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
+TEST_F(ExposureMeterTest, AgreesWithTheRenderersMeter) {
   const HdrImage image = Colours();
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
@@ -151,7 +151,7 @@ TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
       << "every fourth pixel of a smooth picture";
 }
 
-TEST_F(ExposureMeterTest, SettlesTheWhiteBalanceAsTheSeriesDoes) {
+TEST_F(ExposureMeterTest, WhiteBalanceAgreesWithThatOfASeries) {
   HdrImage image(kFrameWidth, kFrameHeight);
   const auto white = LinearSrgbFromXyz() * WhiteOfTemperature(4200.0);
   for (auto& pixel : image.rgb) {
@@ -167,7 +167,7 @@ TEST_F(ExposureMeterTest, SettlesTheWhiteBalanceAsTheSeriesDoes) {
               MeterEv100(Seen(image, Settled(look, image)), kSunDiskLuminance_cd_per_m2), 1e-9);
 }
 
-TEST_F(ExposureMeterTest, WhatIsLookedAtArrivesOnce) {
+TEST_F(ExposureMeterTest, EachReadingArrivesOnce) {
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(Colours());
   ExposureMeter meter;
@@ -229,14 +229,14 @@ std::vector<double> ErrorsOf(AgxLook look) {
   return errors;
 }
 
-TEST(ToneTable, ShowsTheCurveToAFractionOfACode) {
+TEST(ToneTable, ReproducesTheCurveToAFractionOfACode) {
   const std::vector<double> errors = ErrorsOf(AgxLook::kPhoto);
   EXPECT_LT(errors[errors.size() / 2], 0.06);
   EXPECT_LT(errors[errors.size() * 99 / 100], 0.25) << "less than half the dither";
   EXPECT_LT(errors.back(), 0.9);
 }
 
-TEST(ToneTable, OtherLooksAreOffWhereTheyClipAChannel) {
+TEST(ToneTable, OtherLooksDeviateOnlyWhereAChannelClips) {
   for (const AgxLook look : {AgxLook::kNone, AgxLook::kPunchy}) {
     const std::vector<double> errors = ErrorsOf(look);
     EXPECT_LT(errors[errors.size() / 2], 0.1) << NameOf(look);
@@ -262,7 +262,7 @@ RenderTarget Greys(int width, int height, float first_cd_per_m2) {
 // Luminance of grey is its value but for the rounding of three weights that add up to one.
 constexpr double kRounding = 1e-3;
 
-TEST_F(SpotMeterTest, TellsThePixelThatWasPointedAtOnceItHasArrived) {
+TEST_F(SpotMeterTest, ReturnsThePointedPixelAsSoonAsItArrives) {
   const RenderTarget picture = Greys(7, 5, 100.0F);
   SpotMeter meter;
   EXPECT_EQ(meter.At(picture, 0.5, 0.5), std::nullopt) << "nothing is waited for";
@@ -274,7 +274,7 @@ TEST_F(SpotMeterTest, TellsThePixelThatWasPointedAtOnceItHasArrived) {
   EXPECT_NEAR(meter.At(picture, 0.0, 0.0).value(), 100.0 + 34, kRounding);
 }
 
-TEST_F(SpotMeterTest, KeepsItsValueUntilTheNextArrivesAndForgetsItWhenNothingIsPointedAt) {
+TEST_F(SpotMeterTest, KeepsItsValueUntilTheNextArrivesOrPointingEnds) {
   const RenderTarget picture = Greys(3, 3, 50.0F), other = Greys(3, 3, 900.0F);
   SpotMeter meter;
   static_cast<void>(meter.At(picture, 0.0, 0.0));

@@ -113,7 +113,7 @@ std::vector<double> ErrorsUnder(double sun_degrees, const ShadeSteps& steps) {
 
 using Shafts = tests::Headless;
 
-TEST_F(Shafts, TakeWhatTheRenderersShadowHeightsTake) {
+TEST_F(Shafts, RemoveTheSameLightAsTheRenderer) {
   struct Case {
     double sun_degrees, fine_p99, coarse_p99;
   };
@@ -131,7 +131,7 @@ TEST_F(Shafts, TakeWhatTheRenderersShadowHeightsTake) {
   }
 }
 
-TEST_F(Shafts, OfARayThroughAHoleInTheLandEndAtItsLowestGround) {
+TEST_F(Shafts, OfRaysThroughAHoleEndAtTheLowestGround) {
   const double e = 8.0 * kRadiansPerDegree;
   const auto map = std::make_shared<SunShadowMap>(
       SunShadowMapOf(RasterOf(LandMesh(RoughLand, kSide, kCell_m), std::size_t{1} << 18),
@@ -152,7 +152,7 @@ TEST_F(Shafts, OfARayThroughAHoleInTheLandEndAtItsLowestGround) {
   EXPECT_LT(taken[0], 0.3F) << "of a ray of any length";
 }
 
-TEST_F(Shafts, SunlightOverAnEdgeSumsUpToThatOfTheLimbDarkenedDisk) {
+TEST_F(Shafts, SunlightOverAnEdgeSumsToTheLimbDarkenedDisk) {
   const std::vector<ShaderPiece> pieces = {{"air", kSingleTo},
                                            ViewerPiece("viewer/shaders/shafts/march.glsl")};
   std::vector<tests::Arguments<float>> points;
@@ -168,7 +168,7 @@ TEST_F(Shafts, SunlightOverAnEdgeSumsUpToThatOfTheLimbDarkenedDisk) {
   }
 }
 
-TEST_F(Shafts, DarknessBetweenTwoPlacesIsTheMeanOfThatOnTheWay) {
+TEST_F(Shafts, ShadeOfASegmentIsTheMeanAlongIt) {
   const std::vector<ShaderPiece> pieces = {{"air", kSingleTo},
                                            ViewerPiece("viewer/shaders/shafts/march.glsl")};
   std::vector<tests::Arguments<float>> points;
@@ -196,7 +196,7 @@ TEST_F(Shafts, DarknessBetweenTwoPlacesIsTheMeanOfThatOnTheWay) {
   }
 }
 
-TEST_F(Shafts, ATexelKeepsLightAndDistance) {
+TEST_F(Shafts, ATexelStoresLightAndDistance) {
   const ShaderPiece texel = ViewerPiece("viewer/shaders/shafts/texel.glsl");
   std::vector<tests::Arguments<float>> points;
   for (const float light : {0.0F, 1e-6F, 0.37F, 80.0F}) {
@@ -274,7 +274,7 @@ class ShaftPicture {
   GlTexture surface_;
 };
 
-TEST_F(Shafts, OfEveryFourthPixelAreTakenBetweenRaysThatComeAsFar) {
+TEST_F(Shafts, OfEveryFourthPixelAreInterpolatedAtEqualDistance) {
   const auto land = [](double x, double y) {
     return 1000.0 + 1400.0 * std::exp(-1e-6 * ((x + 1500.0) * (x + 1500.0) + 0.3 * y * y));
   };
@@ -304,7 +304,7 @@ TEST_F(Shafts, OfEveryFourthPixelAreTakenBetweenRaysThatComeAsFar) {
   EXPECT_LT(apart.back(), 0.05) << "an edge of shade across rays a degree apart";
 }
 
-TEST_F(Shafts, AMapIsInUseOnceAllOfItIsThere) {
+TEST_F(Shafts, AMapIsUsedOnlyWhenComplete) {
   const auto hill = [](double x, double y) { return 800.0 * std::exp(-1e-6 * (x * x + y * y)); };
   const HeightRaster heights = RasterOf(LandMesh(hill, 81, 100.0), std::size_t{1} << 16);
   ShadeTexture shade;

@@ -40,7 +40,7 @@ namespace {
 using SharedText = tests::Headless;
 
 // Hard case 9.
-TEST_F(SharedText, GpuAgreesWithFloatToTwoPartsInAHundredThousand) {
+TEST_F(SharedText, GpuAgreesWithFloatTo2PartsIn100000) {
   // The exp of a GPU may be one unit in the last place off. Fog of large droplets has g = exp(-x)
   // near 1, and its peak, which is proportional to (1 - g)^-2, was 1.8e-5 off on an NVIDIA H100.
   const double parts = IsSoftwareOpenGl() ? 1.0 : 2.0;
@@ -56,7 +56,7 @@ TEST_F(SharedText, GpuAgreesWithFloatToTwoPartsInAHundredThousand) {
   }
 }
 
-TEST_F(SharedText, AMessageOfTheDriverNamesOurFileAndLine) {
+TEST_F(SharedText, DriverMessagesNameOurFileAndLine) {
   std::vector<ShaderPiece> pieces = SharedTexts();
   pieces.push_back({"viewer/broken.glsl", "void main() {\n  gl_Position = nonsense;\n}\n"});
   try {
@@ -68,7 +68,7 @@ TEST_F(SharedText, AMessageOfTheDriverNamesOurFileAndLine) {
   }
 }
 
-TEST(ShaderText, LinesOfPiecesBecomeNamesAndLinesInTheLogsOfThreeDrivers) {
+TEST(ShaderText, LogsOfThreeDriversNameFileAndLine) {
   const std::vector<ShaderPiece> pieces{{"a.glsl", ""}, {"b.glsl", ""}};
   EXPECT_EQ(NamePieces("0:100012(5): error: x\n0:3(1): error: y", pieces),
             "b.glsl:12: error: x\na.glsl:3: error: y");
@@ -78,7 +78,7 @@ TEST(ShaderText, LinesOfPiecesBecomeNamesAndLinesInTheLogsOfThreeDrivers) {
       << "no such piece: left as it is";
 }
 
-TEST(ShaderText, EveryPieceHasLinesOfItsOwn) {
+TEST(ShaderText, EveryPieceHasItsOwnLineNumbers) {
   const std::vector<ShaderPiece> pieces{{"a.glsl", "float a;"}, {"b.glsl", "float b;"}};
   EXPECT_EQ(ComposeShader(pieces),
             "#version 330 core\n#line 1\nfloat a;\n#line 100001\nfloat b;\n");
@@ -287,7 +287,7 @@ struct SceneOfTextures {
   GroundMaterial material;
 };
 
-TEST_F(TexturesOfThePicture, AreNoMoreThanTheirNumberSays) {
+TEST_F(TexturesOfThePicture, DoNotExceedTheStatedNumber) {
   for (const bool is_heavy : {false, true}) {
     const SceneOfTextures of(is_heavy);
     for (const PictureStage& of_land : StagesOfLights()) {
@@ -307,7 +307,7 @@ TEST_F(TexturesOfThePicture, AreNoMoreThanTheirNumberSays) {
   }
 }
 
-TEST_F(TexturesOfThePicture, ThatDoNotFitADriverAreLeftOutInWords) {
+TEST_F(TexturesOfThePicture, BeyondTheDriverAreOmittedWithAMessage) {
   constexpr PictureStage kAll{PictureStage::Pass::kLand, true, true, true, true, true};
   const SceneOfTextures heavy(true), bare(false);
   for (const bool sky_by_pixel : {false, true}) {
@@ -416,7 +416,7 @@ ShaderProgram ProgramOfBlocks() {
   return ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
 }
 
-TEST_F(UniformBlocks, AirLiesWhereTheDriverLooks) {
+TEST_F(UniformBlocks, AirHasTheOffsetsOfTheDriver) {
   const ShaderProgram program = ProgramOfBlocks();
   EXPECT_EQ(SizeOf(program, "Air"), static_cast<GLint>(sizeof(AirBlock)));
   ExpectOffsets(program, {{"rayleigh_scattering", offsetof(AirBlock, rayleigh_scattering)},
@@ -433,7 +433,7 @@ TEST_F(UniformBlocks, AirLiesWhereTheDriverLooks) {
                           {"wavelengths", offsetof(AirBlock, wavelengths)}});
 }
 
-TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
+TEST_F(UniformBlocks, ViewHasTheOffsetsOfTheDriver) {
   const ShaderProgram program = ProgramOfBlocks();
   EXPECT_EQ(SizeOf(program, "View"), static_cast<GLint>(sizeof(ViewBlock)));
   ExpectOffsets(program, {{"view_right", offsetof(ViewBlock, view_right)},
@@ -453,7 +453,7 @@ TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
                           {"night_level", offsetof(ViewBlock, night_level)}});
 }
 
-TEST_F(UniformBlocks, GroundLiesWhereTheDriverLooks) {
+TEST_F(UniformBlocks, GroundHasTheOffsetsOfTheDriver) {
   const ShaderProgram program = ProgramOfBlocks();
   EXPECT_EQ(SizeOf(program, "Ground"), static_cast<GLint>(sizeof(GroundBlock)));
   ExpectOffsets(program, {{"conifers", offsetof(GroundBlock, conifers)},
@@ -536,7 +536,7 @@ std::vector<float> GroundValues(const MountainSurface& surface, const std::strin
   });
 }
 
-TEST_F(GroundCoverBlock, AlbedoIsThatOfTheRendererInEverySeason) {
+TEST_F(GroundCoverBlock, AlbedoEqualsTheRenderersInEverySeason) {
   const std::vector<double> wavelengths = WavelengthSet(4);
   for (const int day : {61081, 61161, 61212, 61334}) {  // February, May, June, October 2026
     const MountainSurface surface(wavelengths, CoverInSeason(Place{46.5, 8.0, 0.0}, day));
@@ -554,7 +554,7 @@ TEST_F(GroundCoverBlock, AlbedoIsThatOfTheRendererInEverySeason) {
   }
 }
 
-TEST_F(GroundCoverBlock, WavesAreThoseOfTheRenderer) {
+TEST_F(GroundCoverBlock, WavesEqualTheRenderers) {
   const MountainSurface surface(WavelengthSet(4), {});
   constexpr double kBreeze = 0.003 + 0.00512 * 5.0;  // Cox, Munk: 5 m/s
   const std::vector<float> east =
@@ -566,7 +566,7 @@ TEST_F(GroundCoverBlock, WavesAreThoseOfTheRenderer) {
   }
 }
 
-TEST_F(GroundCoverBlock, ReliefIsThatOfTheRenderer) {
+TEST_F(GroundCoverBlock, ReliefEqualsTheRenderers) {
   const MountainSurface surface(WavelengthSet(4), CoverInSeason(Place{46.5, 8.0, 0.0}, 61212));
   const std::vector<float> east = GroundValues(surface,
                                                "DetailedNormal(vec3(a[0], a[1], 0.1 * a[2]), "
@@ -611,7 +611,7 @@ std::vector<float> OfDisks(const char* component) {
                               RisingDisks());
 }
 
-TEST_F(SunLight, OfADiskThatRisesIsThatOfTheRenderer) {
+TEST_F(SunLight, OfARisingDiskEqualsTheRenderers) {
   const std::vector<float> share = OfDisks(".x"), centre = OfDisks(".y");
   const auto points = RisingDisks();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -625,7 +625,7 @@ TEST_F(SunLight, OfADiskThatRisesIsThatOfTheRenderer) {
   }
 }
 
-TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
+TEST_F(SunLight, LimbDarkeningEqualsTheRenderers) {
   std::vector<ShaderPiece> pieces = SharedTexts();
   pieces.push_back({"view",
                     "const vec4 sun = vec4(0.6, 0.0, 0.8, 0.00465);\n"
@@ -656,7 +656,7 @@ TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
   }
 }
 
-TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
+TEST_F(SunLight, TheMoonEqualsTheRenderers) {
   MoonDisk moon{Unrefracted({0.6, 0.0, 0.8}), {}, 0.0045, 0.05, 0.001};
   moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
