@@ -62,11 +62,6 @@ class Skyseries : public BareSceneFolder {
     }
     return child;
   }
-  static int WaitFor(pid_t child) {
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
   [[nodiscard]] std::vector<std::string> SeriesArguments(const char* count = "40") const {
     const char* const size = tests::ScaledDown("64x36", "32x18");
     return {InFolder("s.toml"), "--size", size,
@@ -83,7 +78,7 @@ class Skyseries : public BareSceneFolder {
       if (waitpid(child, nullptr, WNOHANG) != 0) return -2;  // it ended before the second frame
     }
     kill(child, signal);
-    return WaitFor(child);
+    return ExitStatusOf(child);
   }
   /// Expects that all pictures in the folder of the series are whole, and returns their number.
   [[nodiscard]] int WholeFrames() const {
@@ -610,7 +605,7 @@ TEST_F(Skyseries, SignalsLeaveWholeFramesAndTheNextRunResumes) {
     const fs::file_time_type written = fs::last_write_time(first);
     std::vector<std::string> some = SeriesArguments();
     some.insert(some.end(), {"--frames", tests::ScaledDown("0-9", "0-3")});
-    EXPECT_EQ(WaitFor(Start(some)), 0);
+    EXPECT_EQ(ExitStatusOf(Start(some)), 0);
     EXPECT_GE(WholeFrames(), tests::ScaledDown(10, 4));
     EXPECT_EQ(fs::last_write_time(first), written) << "finished frames are kept";
   }
@@ -674,8 +669,8 @@ TEST_F(Skyseries, AnInputIsNeverOverwritten) {
 // Hard case 47.
 TEST_F(Skyseries, TwoProcessesOnTheSameFramesBothSucceed) {
   const pid_t one = Start(SeriesArguments("5")), other = Start(SeriesArguments("5"));
-  EXPECT_EQ(WaitFor(one), 0);
-  EXPECT_EQ(WaitFor(other), 0);
+  EXPECT_EQ(ExitStatusOf(one), 0);
+  EXPECT_EQ(ExitStatusOf(other), 0);
   EXPECT_EQ(WholeFrames(), 5);
 }
 

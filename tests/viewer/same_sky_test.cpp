@@ -15,6 +15,7 @@
 #include "lut/image/exr.h"
 #include "lut/image/image.h"
 #include "lut/image/tone_mapping.h"
+#include "tests/fixtures/luminance.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -35,14 +36,13 @@ glm::dvec3 ToPixel(int x, int y) {
 }
 
 double LuminanceOfPixel(const HdrImage& image, int x, int y) {
-  const std::array<float, 3>& rgb = image.at(x, y);
-  return shared::Luminance<double>(rgb[0], rgb[1], rgb[2]);
+  return tests::Luminance(image.at(x, y));
 }
 
 // Returns the root mean square of differences relative to the light of the second picture over the
 // horizon, without 14 degrees around the sun: pictures have its disk, the panorama for lighting does
 // not, and each smooths the light beside it in its own way.
-double SkyDifferenceOf(const Image& image, const Image& expected) {
+double SkyDifferenceOf(const HdrImage& image, const HdrImage& expected) {
   const SunInSky sun =
       TrueSunAt({kSkyLatitude_deg, kSkyLongitude_deg, 0.0}, ParseInstant(kSkyInstant));
   const glm::dvec3 to_sun = DirectionOf(sun).seen;

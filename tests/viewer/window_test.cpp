@@ -11,9 +11,8 @@
 #include "lut/image/image.h"
 #include "lut/image/png.h"
 #include "renderer/camera/camera_path.h"
-#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/places.h"
-#include "tests/fixtures/temporary_folder.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
@@ -22,11 +21,10 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-class SkyviewWindow : public TemporaryFolder {
+class SkyviewWindow : public BareSceneFolder {
  protected:
   void SetUp() override {
-    TemporaryFolder::SetUp();
-    WriteText(folder_ / "s.toml", kBareSceneText);
+    BareSceneFolder::SetUp();
     static const bool has_display = Run("ALPENGLOW_DISPLAY='8x8'", "").status == 0;
     if (!has_display) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   }

@@ -95,7 +95,7 @@ TEST(Sun, AgreesWithTheTableOfSpaWithinTwoArcseconds) {
   double largest = 0.0;
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line.front() == '#' || line.rfind("utc", 0) == 0) continue;
-    const std::vector<std::string> cells = stored::Cells(line);
+    const std::vector<std::string> cells = CellsOf(line);
     ASSERT_EQ(cells.size(), 8U) << line;
     const auto number = [&](std::size_t i) { return std::stod(cells[i]); };
     const double error = ErrorInArcseconds(

@@ -12,14 +12,14 @@
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/reference/airlight_reference.h"
 #include "tests/fixtures/airlight_on_surface.h"
+#include "tests/fixtures/fog_under_clear_air.h"
 #include "tests/fixtures/lamp_cases.h"
+#include "tests/fixtures/media.h"
 
 namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-PhaseFunction HenyeyGreenstein(double g) { return {.kind = PhaseKind::kHenyeyGreenstein, .g = g}; }
 
 Lamp LampAt(const glm::dvec3& position) {
   Lamp lamp;
@@ -56,7 +56,7 @@ ErrorsOfSixteen Measure(double g, double scale_height_m, int cases) {
     const double length = Logarithmic(10.0, 1000.0, Halton(i, 3));
     const double pitch = std::asin(2.0 * Halton(i, 11) - 1.0);
     const double turn = 2.0 * kPi * Halton(i, 13);
-    LampAir air = HomogeneousAir(0.9 * sigma, sigma, HenyeyGreenstein(g));
+    LampAir air = HomogeneousAir(0.9 * sigma, sigma, tests::LobeOf(g));
     air.layers[0].scale_height_m = scale_height_m;
     const glm::dvec3 forward(std::cos(pitch), 0.0, std::sin(pitch));
     const glm::dvec3 off = std::cos(turn) * glm::dvec3(-std::sin(pitch), 0.0, std::cos(pitch)) +
@@ -101,7 +101,7 @@ TEST(Airlight, SamplesAndReferenceAgreeWithStoredCases) {
 TEST(AirlightReference, InThinAirIsTheAngleOfTheSegment) {
   // Without extinction and for isotropic scattering the integral is sigma / (4 pi D) times the
   // angle under which the lamp sees the segment.
-  const LampAir air = HomogeneousAir(1e-12, 1e-12, HenyeyGreenstein(0.0));
+  const LampAir air = HomogeneousAir(1e-12, 1e-12, tests::LobeOf(0.0));
   const reference::LampLight found =
       reference::AirlightAlong(air, LampAt({5.0, 2.0, 0.0}), Along({1.0, 0.0, 0.0}, 12.0));
   const double angle = std::atan2(5.0, 2.0) + std::atan2(7.0, 2.0);
@@ -110,7 +110,7 @@ TEST(AirlightReference, InThinAirIsTheAngleOfTheSegment) {
 
 // Hard case 42.
 TEST(Airlight, OfARayThroughTheLampIsFiniteAndRight) {
-  const LampAir air = HomogeneousAir(0.02, 0.02, HenyeyGreenstein(0.8));
+  const LampAir air = HomogeneousAir(0.02, 0.02, tests::LobeOf(0.8));
   Lamp lamp = LampAt({40.0, 0.0, 0.0});
   lamp.radius_m = 0.1;
   const LampSegment through = Along({1.0, 0.0, 0.0}, 100.0);
@@ -125,7 +125,7 @@ TEST(Airlight, OfARayThroughTheLampIsFiniteAndRight) {
 
 // Hard case 42.
 TEST(Airlight, OfLampsAtAndBehindTheEyeIsFiniteAndRight) {
-  const LampAir air = HomogeneousAir(0.01, 0.012, HenyeyGreenstein(0.7));
+  const LampAir air = HomogeneousAir(0.01, 0.012, tests::LobeOf(0.7));
   const LampSegment ahead = Along({1.0, 0.0, 0.0}, 50.0);
   Lamp lamp = LampAt({0.0, 0.0, 0.0});
   lamp.radius_m = 0.05;
@@ -138,7 +138,7 @@ TEST(Airlight, OfLampsAtAndBehindTheEyeIsFiniteAndRight) {
 
 // Hard case 14.
 TEST(Airlight, IsProportionalToTheLengthOfShortSegments) {
-  const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.5));
+  const LampAir air = HomogeneousAir(0.01, 0.01, tests::LobeOf(0.5));
   const Lamp lamp = LampAt({3.0, 1.0, 0.0});
   EXPECT_EQ(Airlight(air, lamp, Along({1.0, 0.0, 0.0}, 0.0))[0], 0.0);
   const double metre = Airlight(air, lamp, Along({1.0, 0.0, 0.0}, 1e-3))[0];
@@ -147,7 +147,7 @@ TEST(Airlight, IsProportionalToTheLengthOfShortSegments) {
 }
 
 TEST(Airlight, OfPiecesSumsToThatOfTheRay) {
-  const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.8));
+  const LampAir air = HomogeneousAir(0.01, 0.01, tests::LobeOf(0.8));
   const Lamp lamp = LampAt({30.0, 2.0, 1.0});
   LampSegment piece = Along({1.0, 0.0, 0.0}, 100.0);
   const double whole = Airlight(air, lamp, piece, 32)[0];
@@ -161,7 +161,7 @@ TEST(Airlight, OfPiecesSumsToThatOfTheRay) {
 }
 
 TEST(Airlight, OutsideTheBeamIsZero) {
-  const LampAir air = HomogeneousAir(0.02, 0.02, HenyeyGreenstein(0.6));
+  const LampAir air = HomogeneousAir(0.02, 0.02, tests::LobeOf(0.6));
   Lamp lamp = LampAt({40.0, 5.0, 0.0});
   lamp.axis = {0.0, 1.0, 0.0};
   lamp.profile.kind = LampProfile::Kind::kCone;
@@ -173,7 +173,7 @@ TEST(Airlight, OutsideTheBeamIsZero) {
 }
 
 TEST(Airlight, OfATableEqualsThatOfItsCone) {
-  const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.6));
+  const LampAir air = HomogeneousAir(0.01, 0.01, tests::LobeOf(0.6));
   Lamp cone = LampAt({40.0, 10.0, 0.0});
   cone.axis = glm::normalize(glm::dvec3(-0.6, -1.0, 0.2));
   cone.side = glm::normalize(glm::cross(cone.axis, glm::dvec3(0.0, 0.0, 1.0)));
@@ -204,7 +204,7 @@ TEST(Airlight, EveryBandHasItsOwnExtinction) {
     fog.scattering_per_m[band] = 0.004 * static_cast<double>(band + 1);
     fog.extinction_per_m[band] = 0.006 * static_cast<double>(band + 1);
   }
-  fog.phase = HenyeyGreenstein(0.8);
+  fog.phase = tests::LobeOf(0.8);
   fog.scale_height_m = 40.0;
   LampLayer molecules = fog;
   molecules.phase = {.kind = PhaseKind::kRayleigh};
@@ -222,7 +222,7 @@ TEST(Airlight, EveryBandHasItsOwnExtinction) {
 
 TEST(Airlight, OnSurfacesIsTheIntegralOverTheirHemisphere) {
   for (const double g : {0.0, 0.85}) {
-    const LampAir air = HomogeneousAir(0.01, 0.012, HenyeyGreenstein(g));
+    const LampAir air = HomogeneousAir(0.01, 0.012, tests::LobeOf(g));
     for (const double cos_normal : {1.0, 0.5, 0.0, -0.5}) {
       // Plain quadrature around the normal is finest at the lamp, where radiance is 1/sin(alpha).
       const glm::dvec3 normal(cos_normal, std::sqrt(1.0 - cos_normal * cos_normal), 0.0);
@@ -251,20 +251,10 @@ TEST(Airlight, OnSurfacesIsTheIntegralOverTheirHemisphere) {
   }
 }
 
-LampAir HeightFogUnderClearAir(const PhaseFunction& phase) {
-  LampAir air = HomogeneousAir(4e-3, 4e-3, phase);
-  air.layers[0].scale_height_m = 25.0;
-  air.layers.push_back(air.layers[0]);
-  air.layers[1].scale_height_m = 8000.0;
-  air.layers[1].scattering_per_m[0] = air.layers[1].extinction_per_m[0] = 1.2e-5;
-  air.layers[1].phase = {.kind = PhaseKind::kRayleigh};
-  return air;
-}
-
 // Fixed on 2026-11-21: panels were made for the fog alone, and up to half of the light of rays that
 // leave it was missed, whatever the number of nodes.
 TEST(Airlight, OfClearAirAboveFogIsFound) {
-  LampAir air = HeightFogUnderClearAir(HenyeyGreenstein(0.8));
+  LampAir air = tests::FogUnderClearAir(4e-3, 25.0, tests::LobeOf(0.8));
   air.altitude_at_origin_m = 38.0;
   for (const double distance : {430.0, 1200.0, 2200.0}) {
     for (const double climb : {0.05, 0.2}) {
@@ -279,7 +269,7 @@ TEST(Airlight, OfClearAirAboveFogIsFound) {
 // Fixed on 2026-11-21: where the light fell to nothing from one point of the ray to the next, its
 // scale was taken for 0 and the radiance was not a number.
 TEST(Airlight, IsFiniteWhereLightEndsAbruptly) {
-  LampAir air = HomogeneousAir(4e-3, 4e-3, HenyeyGreenstein(0.8));
+  LampAir air = HomogeneousAir(4e-3, 4e-3, tests::LobeOf(0.8));
   air.layers[0].scale_height_m = 25.0;  // 2 per metre at the eye, 152 m down
   LampSegment ray;
   ray.origin_m = {0.0, 0.0, -152.35477520255077};
@@ -296,7 +286,7 @@ TEST(Airlight, IsFiniteWhereLightEndsAbruptly) {
 // Fixed on 2026-11-21: where two points of the ray at which the light was looked at fell together,
 // the panel between them had no width, and the radiance was not a number.
 TEST(Airlight, IsFiniteInEveryDirectionUnderALamp) {
-  const LampAir air = HeightFogUnderClearAir(DropletPhase(12.0));
+  const LampAir air = tests::FogUnderClearAir(4e-3, 25.0, DropletPhase(12.0));
   const GaussRule& rule = GaussLegendre(3);
   for (double below_m = 0.2; below_m < 2e4; below_m *= 1.6) {
     LampSegment ray;
@@ -317,7 +307,7 @@ TEST(Airlight, IsFiniteInEveryDirectionUnderALamp) {
 }
 
 TEST(Airlight, ReportsItsNumberOfEvaluations) {
-  const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.8));
+  const LampAir air = HomogeneousAir(0.01, 0.01, tests::LobeOf(0.8));
   for (const int nodes : {8, 16, 32}) {
     const AirlightEffort effort =
         EffortOfAirlight(air, LampAt({40.0, 1.0, 0.0}), Along({1.0, 0.0, 0.0}, 100.0), nodes);
@@ -330,12 +320,12 @@ TEST(Airlight, ReportsItsNumberOfEvaluations) {
 
 // Hard case 28.
 TEST(Airlight, WithoutScatteringIsZero) {
-  const LampAir air = HomogeneousAir(0.0, 0.0, HenyeyGreenstein(0.0));
+  const LampAir air = HomogeneousAir(0.0, 0.0, tests::LobeOf(0.0));
   EXPECT_EQ(Airlight(air, LampAt({30.0, 2.0, 0.0}), Along({1.0, 0.0, 0.0}, kInfinite))[0], 0.0);
 }
 
 TEST(Lamp, TransmittanceOfFogIsTheIntegralOfItsDensity) {
-  LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.0));
+  LampAir air = HomogeneousAir(0.01, 0.01, tests::LobeOf(0.0));
   air.layers[0].scale_height_m = 50.0;
   // Level, and rising by one scale height: (1 - 1/e) of the length.
   EXPECT_NEAR(TransmittanceBetween(air, {0.0, 0.0, 0.0}, {100.0, 0.0, 0.0})[0], std::exp(-1.0),

@@ -16,6 +16,7 @@
 #include "atmosphere/medium/phase_table.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/lorenz_mie.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::atmosphere {
@@ -231,7 +232,7 @@ TEST(LorenzMie, FogPhaseFunctionFitsDropletsBetterThanOneLobe) {
     };
     EXPECT_LT(distance(DropletPhase(diameter_um)), diameter_um <= 5.0 ? 0.11 : 0.16)
         << diameter_um << " um";
-    const PhaseFunction lobe{.kind = PhaseKind::kHenyeyGreenstein, .g = mie.mean_cosine};
+    const PhaseFunction lobe = tests::LobeOf(mie.mean_cosine);
     if (diameter_um >= 3.0) {
       EXPECT_GT(distance(lobe), 0.2) << diameter_um << " um";
     }

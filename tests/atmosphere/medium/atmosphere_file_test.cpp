@@ -18,6 +18,7 @@
 #include "atmosphere/medium/medium_fields.h"
 #include "atmosphere/medium/phase_forms.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/toml_keys.h"
 
@@ -252,8 +253,7 @@ TEST(AtmosphereFile, APhaseFunctionMayBeAFileNextToTheAtmosphere) {
       for (int angle = 0; angle <= 180; angle += 3) {
         const double c = std::cos(angle * 3.14159265358979 / 180.0);
         csv << wavelength << ',' << angle << ','
-            << Phase({.kind = PhaseKind::kHenyeyGreenstein, .g = wavelength < 500 ? 0.3 : 0.5}, c)
-            << '\n';
+            << Phase(tests::LobeOf(wavelength < 500 ? 0.3 : 0.5), c) << '\n';
       }
     }
     std::ofstream(folder / "a.toml") << "[mie]\nphase = \"table\"\nphase_file = \"dust.csv\"\n";

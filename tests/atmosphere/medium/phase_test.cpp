@@ -19,6 +19,7 @@
 #include "atmosphere/medium/phase_text.h"
 #include "tests/fixtures/comma_locale.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::atmosphere {
@@ -294,8 +295,6 @@ std::vector<double> ValuesAt(const std::vector<double>& angles, const PhaseFunct
   return values;
 }
 
-PhaseFunction Lobe(double g) { return {.kind = PhaseKind::kHenyeyGreenstein, .g = g}; }
-
 using tests::FaultOf;
 
 TEST(PhaseTable, FollowsALobeSampledAtTheAnglesOfOpac) {
@@ -303,11 +302,12 @@ TEST(PhaseTable, FollowsALobeSampledAtTheAnglesOfOpac) {
   const std::vector<double> angles = OpacAngles();
   ASSERT_EQ(angles.size(), 112U);
   for (const auto& lobe : lobes) {
-    const PhaseTable table(angles, ValuesAt(angles, Lobe(lobe.g)));
+    const PhaseTable table(angles, ValuesAt(angles, tests::LobeOf(lobe.g)));
     EXPECT_NEAR(table.integral(), 1.0, 0.3 * lobe.bound);
     for (double angle = 0.0; angle <= 180.0; angle += 0.037) {
       const double c = std::cos(angle * kRadiansPerDegree);
-      EXPECT_NEAR(table.At(PhaseTable::Position(c)) / Phase(Lobe(lobe.g), c), 1.0, lobe.bound)
+      EXPECT_NEAR(table.At(PhaseTable::Position(c)) / Phase(tests::LobeOf(lobe.g), c), 1.0,
+                  lobe.bound)
           << "g " << lobe.g << " at " << angle
           << " degrees: cubics through samples two degrees apart";
     }
@@ -317,10 +317,10 @@ TEST(PhaseTable, FollowsALobeSampledAtTheAnglesOfOpac) {
 TEST(PhaseTable, KeepsDenseSamplesToOnePartIn20000) {
   std::vector<double> angles;
   for (int i = 0; i <= 1800; ++i) angles.push_back(i * 0.1);
-  const PhaseTable table(angles, ValuesAt(angles, Lobe(0.9)));
+  const PhaseTable table(angles, ValuesAt(angles, tests::LobeOf(0.9)));
   for (double angle = 0.0; angle <= 180.0; angle += 0.0173) {
     const double c = std::cos(angle * kRadiansPerDegree);
-    EXPECT_NEAR(table.At(PhaseTable::Position(c)) / Phase(Lobe(0.9), c), 1.0, 5e-5)
+    EXPECT_NEAR(table.At(PhaseTable::Position(c)) / Phase(tests::LobeOf(0.9), c), 1.0, 5e-5)
         << angle << " degrees: the broken line through 1024 nodes";
   }
 }
@@ -344,11 +344,11 @@ TEST(PhaseTable, IsPositiveForAnySamples) {
 
 TEST(PhaseTable, NormalisesSamplesAndReportsTheFactor) {
   const std::vector<double> angles = OpacAngles();
-  std::vector<double> values = ValuesAt(angles, Lobe(0.7));
+  std::vector<double> values = ValuesAt(angles, tests::LobeOf(0.7));
   for (double& value : values) value *= 1.015;
   const PhaseTable table(angles, values);
   EXPECT_NEAR(table.integral(), 1.015, 2e-4);
-  EXPECT_NEAR(table.At(PhaseTable::Position(0.3)), Phase(Lobe(0.7), 0.3), 1e-4);
+  EXPECT_NEAR(table.At(PhaseTable::Position(0.3)), Phase(tests::LobeOf(0.7), 0.3), 1e-4);
   for (double& value : values) value *= 1.01;
   EXPECT_THAT(FaultOf([&] { PhaseTable(angles, values); }),
               HasSubstr("phase: the integral over the sphere is 1.025"));
@@ -356,7 +356,7 @@ TEST(PhaseTable, NormalisesSamplesAndReportsTheFactor) {
 
 TEST(PhaseTable, RefusesInvalidPhaseFunctions) {
   const std::vector<double> angles = OpacAngles();
-  const std::vector<double> values = ValuesAt(angles, Lobe(0.5));
+  const std::vector<double> values = ValuesAt(angles, tests::LobeOf(0.5));
   const auto with = [&](std::size_t index, double angle, double value) {
     std::vector<double> a = angles, v = values;
     a[index] = angle;
@@ -374,7 +374,9 @@ TEST(PhaseTable, RefusesInvalidPhaseFunctions) {
 TEST(PhaseTable, BetweenWavelengthsIsTheMeanOfBoth) {
   const std::vector<double> angles = OpacAngles();
   const SpectralPhase spectral{
-      {400.0, 600.0}, angles, {ValuesAt(angles, Lobe(0.5)), ValuesAt(angles, Lobe(0.8))}};
+      {400.0, 600.0},
+      angles,
+      {ValuesAt(angles, tests::LobeOf(0.5)), ValuesAt(angles, tests::LobeOf(0.8))}};
   EXPECT_EQ(spectral.At(300.0).per_sr(), spectral.per_sr[0]);
   EXPECT_EQ(spectral.At(700.0).per_sr(), spectral.per_sr[1]);
   const PhaseTable between = spectral.At(450.0);
@@ -389,7 +391,7 @@ TEST(PhaseTable, ComparesSamplesByValue) {
   const auto make = [&](double g) {
     return PhaseFunction{
         .kind = PhaseKind::kTable,
-        .table = std::make_shared<const PhaseTable>(angles, ValuesAt(angles, Lobe(g)))};
+        .table = std::make_shared<const PhaseTable>(angles, ValuesAt(angles, tests::LobeOf(g)))};
   };
   EXPECT_EQ(make(0.7), make(0.7));
   EXPECT_NE(make(0.7), make(0.71));
@@ -406,7 +408,7 @@ class PhaseFile : public TemporaryFolder {
       for (const double angle : OpacAngles()) {
         const double c = std::cos(angle * kRadiansPerDegree);
         text += fmt::format("{},{},{}\n", angle, wavelength,
-                            Phase(Lobe(wavelength == 400.0 ? 0.5 : 0.8), c));
+                            Phase(tests::LobeOf(wavelength == 400.0 ? 0.5 : 0.8), c));
       }
     }
     return text;
@@ -422,7 +424,7 @@ TEST_F(PhaseFile, ColumnsAndRowsMayComeInAnyOrder) {
   const SpectralPhase phase = ReadSpectralPhase(folder_ / "p.csv");
   EXPECT_EQ(phase.wavelength_nm, (std::vector<double>{400.0, 600.0}));
   EXPECT_EQ(phase.angle_deg, OpacAngles());
-  EXPECT_EQ(phase.per_sr[0], ValuesAt(OpacAngles(), Lobe(0.5)));
+  EXPECT_EQ(phase.per_sr[0], ValuesAt(OpacAngles(), tests::LobeOf(0.5)));
 }
 
 TEST_F(PhaseFile, QuotesSeparatorsAndLineEndsOfOtherProgramsAreRead) {

@@ -446,7 +446,7 @@ TEST(SingleScattering, PhaseFunctionsInFloatEqualTheirTables) {
 TEST(SingleScattering, SharpPhaseFunctionsAreFiniteTowardsTheSun) {
   Medium medium = MediumPreset("earth");
   for (const double g : {0.999, -0.999}) {
-    medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = g}};
+    medium.mie_phase = {tests::LobeOf(g)};
     const SingleScattering<float> air(medium);
     for (const double nu : {1.0, -1.0}) {
       const auto light = Inscatter(air, {2.0, nu * 0.5, 0.5, nu}, kFine);

@@ -117,7 +117,7 @@ TEST(PathTracer, BandsOfDifferentPhaseFunctionsAreTracedTogether) {
   Medium medium = MediumPreset("bruneton2017");
   medium.mie_phase.clear();
   for (const double g : {0.2, 0.5, 0.85}) {
-    medium.mie_phase.push_back({.kind = PhaseKind::kHenyeyGreenstein, .g = g});
+    medium.mie_phase.push_back(tests::LobeOf(g));
   }
   const ViewRay ray = RayFromAngles(2.0, 70.0, 30.0, 80.0);
   const int orders = tests::ScaledDown(PathOptions{}.max_order, 2);

@@ -31,6 +31,7 @@
 #include "lut/layer.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/lost_messages.h"
+#include "tests/fixtures/report_files.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::lut {
@@ -48,10 +49,6 @@ Outcome RunBody(const std::function<int()>& body) {
   testing::internal::CaptureStderr();
   const int status = RunProgram("skytest", body);
   return {status, testing::internal::GetCapturedStderr()};
-}
-
-std::size_t LinesOf(const std::string& text) {
-  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
 using AtomicFile = TemporaryFolder;
@@ -85,7 +82,7 @@ TEST(Program, EveryKindOfFailureHasItsStatusAndOneLine) {
   for (const auto& [status, body] : cases) {
     const Outcome outcome = RunBody(body);
     EXPECT_EQ(outcome.status, status);
-    EXPECT_EQ(LinesOf(outcome.error_text), 1U) << outcome.error_text;
+    EXPECT_EQ(CountOf(outcome.error_text, "\n"), 1U) << outcome.error_text;
     EXPECT_THAT(outcome.error_text, testing::StartsWith("skytest: "));
   }
 }
@@ -118,9 +115,7 @@ int StatusOfSignalled(int signal, const std::function<int()>& body) {
       return body();
     }));
   }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return ExitStatusOf(child);
 }
 
 // A loop that never looks for signals, while it writes a file.
@@ -219,11 +214,9 @@ TEST(Program, UsesFewerThreadsWhenTheSystemLimitsThem) {
       _exit(static_cast<int>(
           tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
     }
-    int status = 0;
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(WIFEXITED(status));
-    EXPECT_GE(WEXITSTATUS(status), 1);
-    EXPECT_LE(WEXITSTATUS(status), static_cast<int>(most));
+    const int status = ExitStatusOf(child);
+    EXPECT_GE(status, 1);
+    EXPECT_LE(status, static_cast<int>(most));
   }
 }
 
@@ -502,10 +495,10 @@ std::string ProgressText(ProgressStyle style, std::size_t total) {
 
 TEST(Progress, PlainStyleHasALinePerFivePercentAndQuietNone) {
   const std::string text = ProgressText(ProgressStyle::kPlain, 1000);
-  EXPECT_EQ(LinesOf(text), 20U);
+  EXPECT_EQ(CountOf(text, "\n"), 20U);
   EXPECT_THAT(text, HasSubstr("frames: 5 % (50 of 1000)"));
   EXPECT_THAT(text, HasSubstr("frames: 100 % (1000 of 1000)"));
-  EXPECT_EQ(LinesOf(ProgressText(ProgressStyle::kAuto, 40)), 20U) << "outside a terminal";
+  EXPECT_EQ(CountOf(ProgressText(ProgressStyle::kAuto, 40), "\n"), 20U) << "outside a terminal";
   EXPECT_EQ(ProgressText(ProgressStyle::kQuiet, 100), "");
 }
 
@@ -515,7 +508,7 @@ TEST(Progress, JsonHasOneObjectPerLine) {
   for (std::string line; std::getline(lines, line);)
     EXPECT_THAT(line, testing::MatchesRegex("\\{\"label\":\"frames\",\"done\":[0-9]+,\"total\":4,"
                                             "\"elapsed_s\":[0-9.]+,\"eta_s\":[0-9.]+\\}"));
-  EXPECT_EQ(LinesOf(text), 4U);
+  EXPECT_EQ(CountOf(text, "\n"), 4U);
   EXPECT_THAT(text, HasSubstr("\"done\":4"));
   EXPECT_THAT(TextOfProgress(ProgressStyle::kJson, 4, [](Progress& progress) { progress.Skip(2); }),
               HasSubstr("\"done\":2,\"total\":4"))
@@ -535,7 +528,7 @@ TEST(Progress, ALongUnitShowsItsStepAndFraction) {
   EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"step\":\"mesh\",\"elapsed_s\":"));
   EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"done\":0,\"part\":0.250,\"total\":2,"));
   EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"done\":1,\"total\":2,"));
-  EXPECT_EQ(LinesOf(json), 2U + 5U) << "two steps, four parts, the whole";
+  EXPECT_EQ(CountOf(json, "\n"), 2U + 5U) << "two steps, four parts, the whole";
   EXPECT_EQ(TextOfOneUnit(ProgressStyle::kPlain).substr(0, 68),
             "frames: preparing terrain\nframes: preparing mesh\nframes: 50 % (1 of ");
 }
@@ -544,7 +537,7 @@ TEST(Progress, FractionsOfUnitsNeverDecrease) {
   const std::string text = TextOfProgress(ProgressStyle::kJson, 1, [](Progress& progress) {
     for (const double part : {0.5, 0.25, 0.75}) progress.Part(part);  // 0.25 of a thread held up
   });
-  EXPECT_EQ(LinesOf(text), 2U);
+  EXPECT_EQ(CountOf(text, "\n"), 2U);
 }
 
 TEST(Progress, AdvancesFromManyThreadsAreAllCounted) {
@@ -557,7 +550,7 @@ TEST(Progress, AdvancesFromManyThreadsAreAllCounted) {
     }
     for (std::thread& thread : threads) thread.join();
   });
-  EXPECT_EQ(LinesOf(text), 20U);
+  EXPECT_EQ(CountOf(text, "\n"), 20U);
   EXPECT_THAT(text, HasSubstr("100 % (400 of 400)"));
 }
 

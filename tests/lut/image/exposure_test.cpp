@@ -7,6 +7,7 @@
 #include "lut/image/image.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
+#include "tests/fixtures/flat_picture.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -14,11 +15,7 @@ namespace {
 constexpr double kSunDisk_cd_per_m2 = 1.6e9;
 constexpr double kNotTheDisk_cd_per_m2 = 1e8;
 
-HdrImage Uniform(float luminance) {
-  HdrImage image(40, 40);
-  for (auto& pixel : image.rgb) pixel.fill(luminance);
-  return image;
-}
+HdrImage Uniform(float luminance) { return tests::FlatPicture(40, 40, luminance); }
 
 double Metered(const HdrImage& image) { return MeterEv100(image, kNotTheDisk_cd_per_m2); }
 

@@ -12,6 +12,8 @@
 #include "lut/image/night_vision.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/layer.h"
+#include "tests/fixtures/flat_picture.h"
+#include "tests/fixtures/luminance.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -79,8 +81,7 @@ TEST(NightVision, LuminanceIsContinuousFromDuskToNight) {
 }
 
 HdrImage Uniform(std::array<float, 3> rgb, float scotopic) {
-  HdrImage image(2, 2);
-  image.rgb.assign(4, rgb);
+  HdrImage image = tests::FlatPicture(2, 2, rgb);
   image.layers.push_back({kScotopicChannel, std::vector<float>(4, scotopic)});
   return image;
 }
@@ -138,12 +139,6 @@ TEST(EyeAdaptation, LagsBehindFadingLightButNotAfterBriefShade) {
 }
 
 constexpr double kPixel_rad = 0.05 * kRadiansPerDegree;
-
-double MeanOf(const HdrImage& image) {
-  double sum = 0.0;
-  for (const auto& rgb : image.rgb) sum += shared::Luminance<double>(rgb[0], rgb[1], rgb[2]);
-  return sum / static_cast<double>(image.rgb.size());
-}
 
 /// Returns upright bars of full contrast, `period` pixels from one to the next.
 HdrImage Grating(double mean, double period) {
@@ -204,14 +199,14 @@ TEST(Acuity, FineGratingsFadeInTheDark) {
 TEST(Acuity, ConservesLightAndAddsNoBrightness) {
   for (const double mean : {1.0, 1e-2, 1e-5}) {
     const HdrImage bars = Grating(mean, 17.0);
-    EXPECT_NEAR(MeanOf(WithAcuityOfNight(bars, kPixel_rad)), MeanOf(bars), 1e-5 * mean)
+    EXPECT_NEAR(tests::MeanLuminance(WithAcuityOfNight(bars, kPixel_rad)),
+                tests::MeanLuminance(bars), 1e-5 * mean)
         << "sums of floats";
   }
 }
 
 TEST(Acuity, KeepsLampsAsPointsInTheDark) {
-  HdrImage image(61, 41);
-  for (auto& rgb : image.rgb) rgb.fill(1e-4F);
+  HdrImage image = tests::FlatPicture(61, 41, 1e-4F);
   image.at(30, 20).fill(500.0F);
   const HdrImage seen = WithAcuityOfNight(image, kPixel_rad);
   EXPECT_NEAR(seen.at(30, 20)[1], 500.0F, 1e-2F);
@@ -221,8 +216,7 @@ TEST(Acuity, KeepsLampsAsPointsInTheDark) {
 
 TEST(Acuity, WorksForOnePixelAndOneRow) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{300, 1}, std::pair{1, 300}}) {
-    HdrImage image(width, height);
-    for (auto& rgb : image.rgb) rgb.fill(1e-3F);
+    const HdrImage image = tests::FlatPicture(width, height, 1e-3F);
     for (const auto& rgb : WithAcuityOfNight(image, kPixel_rad).rgb)
       EXPECT_NEAR(rgb[1], 1e-3F, 1e-8F);
   }

@@ -23,6 +23,7 @@
 #include "lut/image/tone_mapping.h"
 #include "lut/layer.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/flat_picture.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::lut {
@@ -184,16 +185,10 @@ TEST_F(PngFile, EveryTruncationAndForeignTextIsRefused) {
   EXPECT_THROW((void)ReadPng(folder_ / "missing.png"), InputError);
 }
 
-HdrImage Grey(int width, int height, float luminance) {
-  HdrImage image(width, height);
-  for (auto& pixel : image.rgb) pixel = {luminance, luminance, luminance};
-  return image;
-}
-
 TEST(Develop, LinearCurveReproducesTheSrgbCodeOnAverage) {
   // Light 0.2140 is code 127.5: half of the pixels 127, half 128, plus dither of one code.
   const DisplayImage display =
-      Develop(Grey(64, 64, 0.21404F), -std::log2(1.2), {.curve = ToneCurve::kLinear});
+      Develop(tests::FlatPicture(64, 64, 0.21404F), -std::log2(1.2), {.curve = ToneCurve::kLinear});
   double sum = 0.0;
   for (const std::uint8_t code : display.rgb) sum += code;
   EXPECT_NEAR(sum / static_cast<double>(display.rgb.size()), 127.5, 0.02)
@@ -226,9 +221,10 @@ TEST(Develop, SlowGradientsHaveNoBands) {
 }
 
 TEST(Develop, KeepsBlackAndRefusesNan) {
-  const DisplayImage display = Develop(Grey(64, 64, 0.0F), 10.0, {.curve = ToneCurve::kAgx});
+  const DisplayImage display =
+      Develop(tests::FlatPicture(64, 64, 0.0F), 10.0, {.curve = ToneCurve::kAgx});
   EXPECT_EQ(display.rgb, std::vector<std::uint8_t>(64 * 64 * 3, 0));
-  HdrImage image = Grey(4, 4, 1.0F);
+  HdrImage image = tests::FlatPicture(4, 4, 1.0F);
   image.at(2, 1)[1] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW((void)Develop(image, 0.0, {.curve = ToneCurve::kAgx}), InternalError);
 }

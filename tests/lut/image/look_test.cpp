@@ -14,6 +14,7 @@
 #include "lut/image/night_vision.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/image/white_balance.h"
+#include "tests/fixtures/flat_picture.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -137,8 +138,7 @@ TEST(Look, DevelopsTheLocallyExposedPicture) {
 }
 
 TEST(Look, NightVisionAppliesBeforeMetering) {
-  HdrImage image(4, 4);
-  image.rgb.assign(16, {1e-3F, 1e-3F, 1e-3F});
+  HdrImage image = tests::FlatPicture(4, 4, 1e-3F);
   image.layers.push_back({kScotopicChannel, std::vector<float>(16, 3e-3F)});
   EXPECT_EQ(Seen(image, {}).rgb, image.rgb);
   EXPECT_EQ(Seen(image, {.night_vision = true}).rgb, SeenByNight(image).rgb);
@@ -148,8 +148,7 @@ TEST(Look, NightVisionAppliesBeforeMetering) {
 TEST(Look, PicturesOfOnePixelOneColumnAndOneLongRowAreDeveloped) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 500}, std::pair{16384, 1}}) {
     // An even grey at dusk, where night vision changes it.
-    HdrImage image(width, height);
-    for (auto& pixel : image.rgb) pixel = {0.5F, 0.5F, 0.5F};
+    HdrImage image = tests::FlatPicture(width, height, 0.5F);
     image.layers.push_back({kScotopicChannel, std::vector<float>(image.rgb.size(), 1.0F)});
     for (Look look : {Look{}, LookFromName("local"), Look{.night_vision = true},
                       Look{.local_exposure = true, .night_vision = true}}) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/error_statistics.h"
 #include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
@@ -23,7 +24,7 @@ Medium Haze(double scattering_per_m, double extinction_per_m) {
   Medium medium = MediumPreset("bruneton2017");
   medium.mie_scattering_per_m.assign(3, scattering_per_m);
   medium.mie_extinction_per_m.assign(3, extinction_per_m);
-  medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
+  medium.mie_phase = {tests::LobeOf(0.8)};
   return medium;
 }
 
@@ -54,12 +55,6 @@ std::vector<double> ErrorsOf(const Medium& medium, const MultipleScatteringOptio
       errors.push_back(static_cast<double>(once[band] + more[band]) / view.radiance[band] - 1.0);
   }
   return errors;
-}
-
-double Rms(const std::vector<double>& errors) {
-  double squares = 0.0;
-  for (const double error : errors) squares += error * error;
-  return std::sqrt(squares / static_cast<double>(errors.size()));
 }
 
 double Largest(const std::vector<double>& errors) {
@@ -108,7 +103,7 @@ TEST(DeltaM, HazeAgreesWithPathsToHalfAPercent) {
                 {2.0, 80.0, 5.07718, 80.0, kToSpace_m, {0.262923, 0.4881752, 0.7311241}},
                 {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.1260689, 0.1947047, 0.2745973}},
                 {1500.0, 89.5, 10.0, 80.0, 20000.0, {0.1167570, 0.2060016, 0.3049198}}});
-  EXPECT_LT(Rms(errors), 5e-3);
+  EXPECT_LT(RmsOf(errors), 5e-3);
   EXPECT_LT(Largest(errors), 2e-2);
 }
 
@@ -121,7 +116,7 @@ TEST(DeltaM, HazeOfOpticalDepthOneAgreesWithPathsToTwoPercent) {
                 {2.0, 80.0, 5.07718, 80.0, kToSpace_m, {0.04870897, 0.0826584, 0.1212603}},
                 {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.07335502, 0.1183075, 0.1695171}},
                 {2.0, 88.0, 0.0, 75.0, 5000.0, {0.05511213, 0.08170906, 0.1076473}}});
-  EXPECT_LT(Rms(errors), 2e-2);
+  EXPECT_LT(RmsOf(errors), 2e-2);
 }
 
 TEST(DeltaM, DustOfMarsAgreesWithPathsToTwoPercent) {
@@ -133,7 +128,7 @@ TEST(DeltaM, DustOfMarsAgreesWithPathsToTwoPercent) {
        {2.0, 80.0, 5.07718, 80.0, kToSpace_m, {1.391229, 1.363444, 1.333030, 1.265028}},
        {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.2709998, 0.3192811, 0.3431749, 0.3703000}},
        {2.0, 88.0, 0.0, 75.0, 5000.0, {0.0419125, 0.0502959, 0.0546645, 0.0593626}}});
-  EXPECT_LT(Rms(errors), 2e-2);
+  EXPECT_LT(RmsOf(errors), 2e-2);
 }
 
 TEST(ThickAir, MoleculesOfOpticalDepthFiveAgreeWithPathsToOnePercent) {
@@ -152,7 +147,7 @@ TEST(ThickAir, MoleculesOfOpticalDepthFiveAgreeWithPathsToOnePercent) {
                 {2.0, 20.0, 90.0, 30.0, kToSpace_m, {0.05234051, 0.1042153, 0.08256036}},
                 {10000.0, 120.0, 60.0, 60.0, 30000.0, {0.04138997, 0.07301351, 0.08362427}},
                 {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.0395654, 0.0103269, 0.005680471}}});
-  EXPECT_LT(Rms(errors), 1e-2);
+  EXPECT_LT(RmsOf(errors), 1e-2);
 }
 
 // The optical depth of the haze along the segments is 20 to 120.
@@ -209,7 +204,7 @@ TEST(OptionsFor, ThinAirWithNarrowLobesTreatsThemSeparately) {
   Medium medium = MediumPreset("earth", {550.0});
   EXPECT_FALSE(OptionsFor(medium).delta_m);
   for (const double g : {0.999, -0.999}) {
-    medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = g}};
+    medium.mie_phase = {tests::LobeOf(g)};
     EXPECT_TRUE(OptionsFor(medium).delta_m) << g;
   }
   medium.mie_scattering_per_m = {1e-9};
@@ -236,7 +231,7 @@ TEST(DeltaM, SurvivesARoundTripThroughStoredValues) {
 // Returns the air of the earth at 550 nm whose aerosol throws light back.
 Medium WithBackwardLobe() {
   Medium medium = InScalarLight(MediumPreset("earth", {550.0}));
-  medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = -0.9}};
+  medium.mie_phase = {tests::LobeOf(-0.9)};
   medium.mie_extinction_per_m = {0.5 / 1200.0};
   medium.mie_scattering_per_m = {0.97 * 0.5 / 1200.0};
   medium.mie_scale_height_m = 1200.0;
@@ -268,7 +263,7 @@ TEST(DeltaM, LightOfShortSegmentsTendsToNothing) {
 TEST(DeltaM, LightOfABackwardLobeIsFiniteAboveAllMolecules) {
   Medium medium = MediumPreset("bruneton2017");
   medium.atmosphere_height_m = 30e3;
-  medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = -0.95}};
+  medium.mie_phase = {tests::LobeOf(-0.95)};
   medium.ozone_absorption_per_m.assign(3, 0.0);
   const std::pair<double, double> heights_m[] = {{100.0, 2400.0}, {8000.0, 100.0}, {100.0, 100.0}};
   for (const auto& [of_molecules_m, of_aerosol_m] : heights_m) {

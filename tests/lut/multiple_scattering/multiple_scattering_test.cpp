@@ -34,7 +34,7 @@ TEST(LegendreCoefficients, OfMoleculesAreOneZeroOneTenth) {
 
 TEST(LegendreCoefficients, OfHenyeyGreensteinArePowersOfG) {
   for (const double g : {-0.999, -0.99, -0.6, 0.0, 0.3, 0.8, 0.99, 0.999}) {
-    const auto chi = LegendreCoefficients({.kind = PhaseKind::kHenyeyGreenstein, .g = g}, 8192);
+    const auto chi = LegendreCoefficients(tests::LobeOf(g), 8192);
     for (std::size_t l = 0; l < chi.size(); ++l)
       ASSERT_NEAR(chi[l], std::pow(g, static_cast<double>(l)), 1e-6) << g << ", degree " << l;
   }
@@ -155,7 +155,7 @@ TEST(MultipleScattering, EveryBandHasItsOwnPhaseFunction) {
   Medium medium = MediumPreset("hazy");
   medium.mie_phase.clear();
   for (const double g : {0.5, 0.6, 0.7, 0.8}) {
-    medium.mie_phase.push_back({.kind = PhaseKind::kHenyeyGreenstein, .g = g});
+    medium.mie_phase.push_back(tests::LobeOf(g));
   }
   MultipleScatteringOptions few_orders = tests::kSmallLight;
   few_orders.max_orders = 4;
@@ -592,7 +592,7 @@ TEST(MultipleScattering, LightBelowThickFogAgreesWithPaths) {
   Medium medium = ThickMolecules(0.0);
   medium.polarised = false;
   medium.mie_scale_height_m = 1200.0;
-  medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.85}};
+  medium.mie_phase = {tests::LobeOf(0.85)};
   medium.mie_scattering_per_m = medium.mie_extinction_per_m = {15.65 / 1200.0};
   MultipleScatteringOptions options = OptionsFor(medium);
   options.sun_angles = 12;

@@ -8,16 +8,12 @@
 #include <limits>
 #include <regex>
 
+#include "tests/fixtures/report_files.h"
+
 namespace alpenglow::lut {
 namespace {
 
 using testing::HasSubstr;
-
-std::size_t CountOf(const std::string& text, const std::string& pattern) {
-  const std::regex what(pattern);
-  return static_cast<std::size_t>(
-      std::distance(std::sregex_iterator(text.begin(), text.end(), what), {}));
-}
 
 Plot PlotOf(std::vector<PlotPoint> points) {
   return {"title",
@@ -51,11 +47,12 @@ TEST(SvgPlot, OmitsValuesWithoutALogarithm) {
   const std::string svg =
       SvgOfPlot(PlotOf({{1e-6, 0.1, {}, ""}, {0.0, 0.1, {}, ""}, {1e-6, nan, {}, ""}}));
   EXPECT_EQ(CountOf(svg, "class=\"mark\""), 2U) << "one point, and one in the legend";
-  EXPECT_EQ(CountOf(svg, "nan|inf"), 0U);
+  EXPECT_EQ(CountOf(svg, "nan") + CountOf(svg, "inf"), 0U);
 }
 
 TEST(SvgPlot, WithoutPointsIsAnEmptyFrame) {
-  EXPECT_EQ(CountOf(SvgOfPlot(PlotOf({})), "nan|inf"), 0U);
+  const std::string svg = SvgOfPlot(PlotOf({}));
+  EXPECT_EQ(CountOf(svg, "nan") + CountOf(svg, "inf"), 0U);
 }
 
 TEST(SvgPlot, MarkersLieInsideTheSheet) {

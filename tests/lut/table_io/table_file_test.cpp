@@ -98,9 +98,7 @@ class TableFile : public TemporaryFolder {
   }
 
   void ExpectRefused(const std::string& reason) const {
-    const std::string fault = tests::FaultOf([&] { return ReadTransmittanceTable(bad_); });
-    EXPECT_THAT(fault, testing::StartsWith(bad_.string() + ": "));
-    EXPECT_THAT(fault, HasSubstr(reason));
+    tests::ExpectNames(tests::FaultOf([&] { return ReadTransmittanceTable(bad_); }), bad_, reason);
   }
 
   fs::path good_, bad_;

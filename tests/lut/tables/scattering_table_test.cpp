@@ -143,7 +143,7 @@ const std::vector<ReferenceRay>& RaysOf(const Medium& medium, const Regime& regi
 // Compares radiance with phase functions in all bands.
 void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
   const SingleScattering<float> air(table.medium());
-  ErrorStatistics absolute, relative;
+  TableErrors absolute, relative;
   for (const auto& [ray, truth] : RaysOf(table.medium(), regime)) {
     const Bands<float> value = air.Inscatter(table.Lookup(ray), ray.nu);
     for (std::size_t band = 0; band < value.count; ++band) {

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <vector>
 
+#include "atmosphere/math/error_statistics.h"
+#include "lut/layer.h"
 #include "tests/fixtures/quantile.h"
 
 namespace alpenglow::lut {
 
 /// Collects differences between a method and the reference solution on the same work.
-class ErrorStatistics {
+class TableErrors {
  public:
   void Add(double value, double truth) {
     absolute_.push_back(std::abs(value - truth));
@@ -19,11 +21,7 @@ class ErrorStatistics {
   }
 
   [[nodiscard]] double Max() const { return *std::max_element(absolute_.begin(), absolute_.end()); }
-  [[nodiscard]] double Rms() const {
-    double sum = 0.0;
-    for (const double error : absolute_) sum += error * error;
-    return std::sqrt(sum / static_cast<double>(absolute_.size()));
-  }
+  [[nodiscard]] double Rms() const { return RmsOf(absolute_); }
   /// Returns the rms relative to the rms of the truth.
   [[nodiscard]] double RelativeRms() const {
     return Rms() / std::sqrt(truth_squares_ / static_cast<double>(absolute_.size()));

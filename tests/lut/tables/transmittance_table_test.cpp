@@ -54,7 +54,7 @@ TEST(TransmittanceTable, ErrorIsBelowTheStatedBound) {
     const TransmittanceTable table(medium);
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    ErrorStatistics errors;
+    TableErrors errors;
     for (int i = 0; i < 1500; ++i) {
       const double u = uniform(random);
       const double h = (i % 2 == 0 ? 3000.0 : medium.atmosphere_height_m) * u * u;

@@ -12,6 +12,7 @@
 
 #include "renderer/effects/effects.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/flat_picture.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -215,11 +216,7 @@ TEST(Effects, AnUnknownNameIsRefusedWithTheNearest) {
         << text;
 }
 
-HdrImage Grey(float value) {
-  HdrImage image(20, 10);
-  for (auto& rgb : image.rgb) rgb = {value, value, value};
-  return image;
-}
+HdrImage Grey(float value) { return tests::FlatPicture(20, 10, value); }
 
 TEST(PictureChange, IsTheRelativeErrorOfSmallChanges) {
   const ErrorStatistics change = ChangeOf(Grey(100.0F), Grey(101.0F));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/ray_regimes.h"
 
 namespace alpenglow::renderer {
@@ -292,7 +293,7 @@ TEST(AerialPerspective, HazeIsWithinHalfAPercentOfTracedPaths) {
   Medium haze = MediumPreset("bruneton2017");
   haze.mie_scattering_per_m.assign(3, 7.992e-5);
   haze.mie_extinction_per_m.assign(3, 8.88e-5);
-  haze.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
+  haze.mie_phase = {tests::LobeOf(0.8)};
   const SingleScattering<float> air(haze);
   const MultipleScattering multiple_scattering(haze, OptionsFor(haze));
   ASSERT_TRUE(multiple_scattering.options().delta_m);

@@ -14,6 +14,7 @@
 #include "atmosphere/medium/phase.h"
 #include "renderer/lamps/lamp_tree.h"
 #include "tests/fixtures/lamp_site.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::renderer {
@@ -38,7 +39,7 @@ std::vector<LampLayer> LayersFor(const HazyAir& air) {
     layer.scattering_per_m = layer.extinction_per_m = Bands<double>(1);
     layer.scattering_per_m[0] = layer.extinction_per_m[0] = haze.per_m;
     if (haze.g == 0.0) layer.phase = {.kind = PhaseKind::kRayleigh};
-    if (haze.g != 0.0) layer.phase = {.kind = PhaseKind::kHenyeyGreenstein, .g = haze.g};
+    if (haze.g != 0.0) layer.phase = tests::LobeOf(haze.g);
     layers.push_back(layer);
   }
   return layers;

@@ -13,11 +13,14 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/error_statistics.h"
 #include "atmosphere/math/numerics.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/lamps/placed_lamp.h"
 #include "tests/fixtures/airlight_on_surface.h"
+#include "tests/fixtures/fog_under_clear_air.h"
 #include "tests/fixtures/lamp_night.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/wall_folder.h"
 
@@ -65,9 +68,9 @@ struct PlannedLight {
     return worst;
   }
   [[nodiscard]] double Rms() const {
-    double squares = 0.0;
-    for (const auto& [found, all] : found_and_all) squares += std::pow(found / all - 1.0, 2);
-    return std::sqrt(squares / static_cast<double>(found_and_all.size()));
+    std::vector<double> errors;
+    for (const auto& [found, all] : found_and_all) errors.push_back(found / all - 1.0);
+    return RmsOf(errors);
   }
 };
 
@@ -233,18 +236,6 @@ TEST_F(LampPlans, LampsThatDaylightOutshinesCostNothing) {
     EXPECT_TRUE(tile.near_air.empty() && tile.far_air.empty());
 }
 
-/// Returns fog over level ground at altitude 0, with the molecules of clear air.
-LampAir FogUnderClearAir(double extinction_per_m, double scale_height_m) {
-  LampAir air = HomogeneousAir(extinction_per_m, extinction_per_m,
-                               {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8});
-  air.layers[0].scale_height_m = scale_height_m;
-  air.layers.push_back(air.layers[0]);
-  air.layers[1].scale_height_m = 8000.0;
-  air.layers[1].scattering_per_m[0] = air.layers[1].extinction_per_m[0] = 1.2e-5;
-  air.layers[1].phase = {.kind = PhaseKind::kRayleigh};
-  return air;
-}
-
 /// Returns the irradiance by quadrature around the direction to the lamp, with the smallest steps
 /// there. Rays end at the ground.
 double OverTheHemisphere(const LampAir& air, const Lamp& lamp, const glm::dvec3& point,
@@ -288,7 +279,7 @@ GlowError ErrorOver(const ErrorOf& error_of) {
   GlowError result;
   int count = 0;
   for (const double scale_height : {25.0, 100.0}) {
-    const LampAir air = FogUnderClearAir(4.3e-3, scale_height);
+    const LampAir air = tests::FogUnderClearAir(4.3e-3, scale_height, tests::LobeOf(0.8));
     for (const double height : {0.35, 6.0, 24.0}) {
       const LampAirlightIrradiance glow(air.layers, tests::kLampPlanet_m, height, 0.0);
       for (const double distance : {5.0, 20.0, 60.0, 200.0, 600.0}) {
@@ -339,7 +330,7 @@ TEST(LampAirlightIrradiance, OnWallsIsTheLightOfTheirHemisphere) {
 }
 
 TEST(LampAirlightIrradiance, FarFromTheGroundIsThatOfHomogeneousAir) {
-  const LampAir air = HomogeneousAir(4e-3, 4e-3, {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.5});
+  const LampAir air = HomogeneousAir(4e-3, 4e-3, tests::LobeOf(0.5));
   const LampAirlightIrradiance glow(air.layers, tests::kLampPlanet_m, 5000.0, 0.0);
   for (const double cosine : {1.0, 0.5, 0.0}) {
     const glm::dvec3 normal(cosine, std::sqrt(1.0 - cosine * cosine), 0.0);
@@ -349,7 +340,7 @@ TEST(LampAirlightIrradiance, FarFromTheGroundIsThatOfHomogeneousAir) {
 }
 
 TEST(LampAirlightIrradiance, IsFiniteEverywhere) {
-  const LampAir air = FogUnderClearAir(0.05, 5.0);
+  const LampAir air = tests::FogUnderClearAir(0.05, 5.0, tests::LobeOf(0.8));
   const LampAirlightIrradiance glow(air.layers, tests::kLampPlanet_m, 3.0, 3.0);
   for (const double distance : {0.0, 1e-3, 0.2, 7.0, 3e3, 1e5}) {
     for (const glm::dvec3& towards : {kUpwards, -kUpwards, glm::dvec3(1.0, 0.0, 0.0)}) {

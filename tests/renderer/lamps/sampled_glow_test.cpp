@@ -12,6 +12,7 @@
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/math/constants.h"
 #include "tests/fixtures/lamp_site.h"
+#include "tests/fixtures/media.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -29,12 +30,12 @@ LampLayer LayerOf(double per_m, double scale_height_m, const PhaseFunction& phas
 
 std::vector<LampLayer> ClearAir() {
   return {LayerOf(1.2e-5, 8000.0, {.kind = PhaseKind::kRayleigh}),
-          LayerOf(4.0e-5, 1200.0, {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.7})};
+          LayerOf(4.0e-5, 1200.0, tests::LobeOf(0.7))};
 }
 
 std::vector<LampLayer> LightFog() {
   std::vector<LampLayer> layers = ClearAir();
-  layers.push_back(LayerOf(4e-3, 25.0, {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}));
+  layers.push_back(LayerOf(4e-3, 25.0, tests::LobeOf(0.8)));
   return layers;
 }
 

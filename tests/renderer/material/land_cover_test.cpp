@@ -22,6 +22,7 @@
 #include "renderer/surface/surface.h"
 #include "tests/fixtures/class_map.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/luminance.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -165,17 +166,13 @@ TEST_F(LandCover, FilesThatAreNoMapOrPictureAreRefused) {
   EXPECT_NE(fault_of("", WritePicture(folder_ / "plain.tif"), bare), "no fault");
 }
 
-double Linear(int code) {
-  const double encoded = code / 255.0;
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
 /// Expects the colours (red, green, blue) of a place in 255ths.
 void ExpectColour(const std::optional<std::array<double, 3>>& found,
                   const std::array<int, 3>& codes, double relative = 0.0) {
   ASSERT_TRUE(found.has_value());
   for (std::size_t c = 0; c < 3; ++c)
-    EXPECT_NEAR((*found)[c], Linear(codes[c]), relative * Linear(codes[c]) + 1e-4);
+    EXPECT_NEAR((*found)[c], tests::LightOfCode(codes[c] / 255.0),
+                relative * tests::LightOfCode(codes[c] / 255.0) + 1e-4);
 }
 
 class DrapedColours : public TemporaryFolder {
@@ -276,7 +273,7 @@ TEST_F(DrapedColours, TransparentPixelsShowNothing) {
     // Colours next to the hole are not mixed with what is stored in it.
     const auto beside = drape->At({-4000.0 + 15.9 * 125.0, 0.0, 0.0}, 0.0, 1.0);
     ASSERT_TRUE(beside.has_value());
-    EXPECT_NEAR((*beside)[0], Linear(45), 1e-4);
+    EXPECT_NEAR((*beside)[0], tests::LightOfCode(45 / 255.0), 1e-4);
   }
 }
 
@@ -325,7 +322,7 @@ TEST_F(DrapedColours, OfTheWholeEarthCoverLandOverItsSeam) {
        {std::pair{-3000.0, 63}, {-10.0, 63}, {10.0, 0}, {3000.0, 0}}) {
     const auto seen = drape->At({east_m, 0.0, 0.0}, 0.0, 1.0);
     ASSERT_TRUE(seen.has_value()) << east_m;
-    EXPECT_NEAR((*seen)[0], Linear(3 * column), 1e-4) << east_m;
+    EXPECT_NEAR((*seen)[0], tests::LightOfCode(3 * column / 255.0), 1e-4) << east_m;
   }
 }
 
@@ -355,7 +352,8 @@ TEST_F(DrapedColours, OnNoMapOfTheEarthAreRefused) {
 
 TEST_F(DrapedColours, DistantGroundHasTheMeanColour) {
   double mean = 0.0;
-  for (int column = 0; column < kPictureSide; ++column) mean += Linear(3 * column) / kPictureSide;
+  for (int column = 0; column < kPictureSide; ++column)
+    mean += tests::LightOfCode(3 * column / 255.0) / kPictureSide;
   const auto rgb = Drape(WritePicture(folder_ / "plain.tif"))->At({500.0, 500.0, 0.0}, 0.0, 1e6);
   ASSERT_TRUE(rgb.has_value());
   EXPECT_NEAR((*rgb)[0], mean, 1e-3 * mean) << "rounded to 16 bits at six levels";

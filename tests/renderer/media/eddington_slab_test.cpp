@@ -14,6 +14,7 @@
 #include "atmosphere/medium/phase.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/media.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -125,9 +126,7 @@ double TracedRadiance(const Slab& slab, const glm::dvec3& look, int paths) {
 double FastRadiance(const Slab& slab, const glm::dvec3& look) {
   const auto chi = LegendreCoefficients(slab.phase, 2);
   const EddingtonSlab eddington({slab.albedo, chi[1], chi[2]}, slab.depth, slab.ground, slab.mu0);
-  PhaseFunction blurred;
-  blurred.kind = PhaseKind::kHenyeyGreenstein;
-  blurred.g = chi[1];
+  const PhaseFunction blurred = tests::LobeOf(chi[1]);
   const glm::dvec3 beam(std::sqrt(1.0 - slab.mu0 * slab.mu0), 0.0, slab.mu0);
   const double cosine = -glm::dot(look, beam);
   constexpr int kSteps = 1000;
@@ -146,13 +145,6 @@ double FastRadiance(const Slab& slab, const glm::dvec3& look) {
     sum += std::exp(-t) * source * length / kSteps;
   }
   return sum;
-}
-
-PhaseFunction Lobe(double g) {
-  PhaseFunction phase;
-  phase.kind = PhaseKind::kHenyeyGreenstein;
-  phase.g = g;
-  return phase;
 }
 
 // Hard case 30.
@@ -218,7 +210,7 @@ TEST(EddingtonSlab, LobesBackwardsSendNoNegativeLight) {
 TEST(EddingtonSlab, FluxesOfLobesBackwardsAreThoseOfTracedPhotons) {
   for (const double g : {-0.5, -0.8}) {
     for (const double depth : {0.3, 1.0, 4.0}) {
-      const Slab slab{depth, 1.0, 0.2, 0.6, Lobe(g)};
+      const Slab slab{depth, 1.0, 0.2, 0.6, tests::LobeOf(g)};
       const Fluxes traced = TracedFluxes(slab, 10000);
       const EddingtonSlab fast({1.0, g, g * g}, depth, 0.2, slab.mu0);
       EXPECT_NEAR(fast.At(0.0).UpwardFlux() / slab.mu0, traced.up, 0.1) << g << " " << depth;
@@ -232,7 +224,7 @@ TEST(EddingtonSlab, RadiancesAreThoseOfTracedPaths) {
   int count = 0;
   for (const double depth : {0.5, 2.0, 8.0}) {
     for (const double mu0 : {0.15, 0.6}) {
-      const Slab slab{depth, 1.0, 0.2, mu0, Lobe(0.8)};
+      const Slab slab{depth, 1.0, 0.2, mu0, tests::LobeOf(0.8)};
       for (const double z : {0.9, 0.2, -0.2, -0.9}) {
         for (const double azimuth : {0.3, 1.6, 3.0}) {
           const double sine = std::sqrt(1.0 - z * z);

@@ -77,9 +77,7 @@ const MediaStage& TheStage() {
 }
 
 MediumOptics Optics(double extinction, double albedo, double emission = 0.0) {
-  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), PhaseFunction{}};
-  optics.phase.kind = PhaseKind::kHenyeyGreenstein;
-  optics.phase.g = 0.4;
+  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), tests::LobeOf(0.4)};
   for (std::size_t band = 0; band < 3; ++band) {
     optics.extinction_per_m[band] = extinction * (1.0 + 0.2 * static_cast<double>(band));
     optics.scattering_per_m[band] = albedo * optics.extinction_per_m[band];
@@ -291,19 +289,12 @@ TEST(DimmedByMedia, LightIsDimmedByTheMediaInFrontOfIt) {
   EXPECT_NEAR(static_cast<double>(dimmed[0]) / expected, 1.0, 1e-3);
 }
 
-PhaseFunction LobeOf(double g) {
-  PhaseFunction phase;
-  phase.kind = PhaseKind::kHenyeyGreenstein;
-  phase.g = g;
-  return phase;
-}
-
 TEST(LayerLight, IsNowhereNegative) {
   const MediaStage& stage = TheStage();
   const LayerShape shape{0.0, 30.0, stage.medium.planet_radius_m, 120e3, std::nullopt};
   for (const double g : {-0.99, -0.9, -0.6, 0.0, 0.85, 0.99}) {
     MediumOptics optics = Optics(0.02, 1.0);
-    optics.phase = LobeOf(g);
+    optics.phase = tests::LobeOf(g);
     const ExponentialLayer layer(shape, optics);
     BandLight sun(3);
     std::fill_n(sun.value.begin(), sun.count, 0.8F);

@@ -41,9 +41,8 @@ RenderSettings Small(int width, int height, EffectSet effects = EffectSet::All()
 
 /// Returns the illuminance by a picture of a narrow field [lx].
 double Lux(const HdrImage& image, double pixel_rad) {
-  double sum = 0.0;
-  for (const auto& rgb : image.rgb) sum += tests::Luminance(rgb);
-  return sum * pixel_rad * pixel_rad;
+  const auto pixels = static_cast<double>(image.rgb.size());
+  return tests::MeanLuminance(image) * pixels * pixel_rad * pixel_rad;
 }
 
 /// A direction as azimuth and elevation [degrees].

@@ -16,6 +16,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/media.h"
+#include "tests/fixtures/mesh_scene.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/renderer/picture/sun_seen.h"
@@ -138,10 +139,8 @@ Scene AtTheBottomOf(const std::filesystem::path& file, double depth_m) {
     text += fmt::format("v {} {} 300\n", 30e3 * std::cos(turn), 30e3 * std::sin(turn));
   }
   for (int i = 0; i < kRim; ++i) text += fmt::format("f 1 {} {}\n", i + 2, (i + 1) % kRim + 2);
-  WriteText(file, text);
-  Scene scene = QuickScene(0.0, 40.0, 55.0, 30.0);
+  Scene scene = tests::MeshScene(QuickScene(0.0, 40.0, 55.0, 30.0), file, text);
   scene.camera.height = {2.0, true};
-  scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill};
   return scene;
 }
 

@@ -18,6 +18,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/lamp_site.h"
 #include "tests/fixtures/luminance.h"
+#include "tests/fixtures/mesh_scene.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/thread_counts.h"
@@ -31,13 +32,6 @@ using RenderAirFiles = TemporaryFolder;
 const RenderSettings kSmallGround{
     .width = 12, .height = 8, .samples_per_pixel = 4, .air_nodes = 8, .layers = {}};
 
-/// Returns a scene on a mesh of a file with this text.
-Scene MeshScene(Scene scene, const std::filesystem::path& file, const std::string& text) {
-  WriteText(file, text);
-  scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill};
-  return scene;
-}
-
 // At 46.5 N 8 E on that evening the sun is 15 degrees high, at azimuth 281.
 const UtcTime kLowSun = ParseInstant("2026-06-21T17:45:00Z");
 const UtcTime kHighSun = ParseInstant("2026-06-21T11:30:00Z");
@@ -46,10 +40,7 @@ double MeanLuminance(const SceneRenderer& renderer, const CameraSample& camera_s
                      EffectSet effects = EffectSet::All()) {
   RenderSettings settings = kSmallGround;
   settings.effects = effects;
-  const HdrImage image = renderer.Render(camera_sample, settings);
-  double sum = 0.0;
-  for (const auto& rgb : image.rgb) sum += Luminance(rgb) / static_cast<double>(image.rgb.size());
-  return sum;
+  return tests::MeanLuminance(renderer.Render(camera_sample, settings));
 }
 
 /// Returns the luminance of a view over the sea under the low sun; angles are in degrees.
@@ -109,7 +100,8 @@ class Valley : public TemporaryFolder {
         text += fmt::format("f {} {} {} {}\n", first, first + 1, above + 1, above);
       }
     }
-    Scene scene = MeshScene(QuickScene(400.0, 0.0, -70.0, 60.0), folder_ / "valley.obj", text);
+    Scene scene =
+        tests::MeshScene(QuickScene(400.0, 0.0, -70.0, 60.0), folder_ / "valley.obj", text);
     scene.ground.kind = GroundCover::Kind::kSnow;
     return scene;
   }
@@ -193,9 +185,9 @@ TEST(RenderAir, SharedAirOfAPixelIsRightToATenthOfAPercent) {
 TEST_F(RenderAirFiles, ShadedAirInFrontOfAMountainHasNoGlow) {
   // A ridge across the view is 1500 m high and 4 km away; the low sun is behind it.
   const Scene scene =
-      MeshScene(QuickScene(50.0, 62.0, 4.0, 10.0), folder_ / "ridge.obj",
-                "v 3000 -60000 0\nv 3000 60000 0\nv 4000 -60000 1500\nv 4000 60000 1500\n"
-                "v 9000 -60000 0\nv 9000 60000 0\nf 1 3 2\nf 2 3 4\nf 3 5 4\nf 4 5 6\n");
+      tests::MeshScene(QuickScene(50.0, 62.0, 4.0, 10.0), folder_ / "ridge.obj",
+                       "v 3000 -60000 0\nv 3000 60000 0\nv 4000 -60000 1500\nv 4000 60000 1500\n"
+                       "v 9000 -60000 0\nv 9000 60000 0\nf 1 3 2\nf 2 3 4\nf 3 5 4\nf 4 5 6\n");
   const SceneRenderer renderer(scene);
   RenderSettings settings{
       .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 12, .layers = {}};
@@ -243,10 +235,10 @@ TEST(RenderAir, TheSeaHidesTheFootOfDistantMountains) {
 TEST_F(RenderAirFiles, ARidgeOfNoThicknessHasADarkSide) {
   // A sheet across the view is 1500 m high and 4 km away, with the low sun behind it.
   for (const char* faces : {"f 1 3 2\nf 2 3 4\n", "f 1 2 3\nf 2 4 3\n"}) {
-    const Scene scene =
-        MeshScene(QuickScene(50.0, 72.0, 4.0, 10.0), folder_ / "sheet.obj",
-                  "v 4000 -60000 -300\nv 4000 60000 -300\nv 4000 -60000 1500\nv 4000 60000 1500\n" +
-                      std::string(faces));
+    const Scene scene = tests::MeshScene(
+        QuickScene(50.0, 72.0, 4.0, 10.0), folder_ / "sheet.obj",
+        "v 4000 -60000 -300\nv 4000 60000 -300\nv 4000 -60000 1500\nv 4000 60000 1500\n" +
+            std::string(faces));
     const SceneRenderer renderer(scene);
     RenderSettings settings{
         .width = 16, .height = 9, .samples_per_pixel = 4, .air_nodes = 12, .layers = {}};
@@ -295,7 +287,7 @@ class Terminator : public TemporaryFolder {
         if (b != d) text += fmt::format("f {} {} {}\n", c, b, d);
       }
     }
-    scene_ = MeshScene(QuickScene(kEyeHeight_m, 0.0, 0.0, 32.0), folder_ / "ball.obj", text);
+    scene_ = tests::MeshScene(QuickScene(kEyeHeight_m, 0.0, 0.0, 32.0), folder_ / "ball.obj", text);
   }
 
   static std::string VertexAt(double polar, double turn) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/base/error.h"
+#include "tests/fixtures/flat_picture.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -14,8 +15,7 @@ constexpr int kLandSide = 10;
 
 /// An even grey of land a kilometre away, all of it in the sun.
 HdrImage EvenLand() {
-  HdrImage image(kLandSide, kLandSide);
-  for (auto& pixel : image.rgb) pixel = {100.0F, 100.0F, 100.0F};
+  HdrImage image = tests::FlatPicture(kLandSide, kLandSide, 100.0F);
   image.layers = {{kDepthChannel, std::vector<float>(kLandSide * kLandSide, 1000.0F)},
                   {"sun_visibility.Y", std::vector<float>(kLandSide * kLandSide, 1.0F)}};
   return image;

@@ -9,6 +9,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/reference/airlight_reference.h"
+#include "tests/fixtures/media.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -31,8 +32,7 @@ TEST(LampWorks, ClosedFormOfSunEtAlIsTheIntegralInIsotropicFog) {
     const double along = 100.0 * Halton(i, 3), across = logarithmic(0.5, 50.0, Halton(i, 5));
     const double length = i % 4 == 0 ? std::numeric_limits<double>::infinity()
                                      : logarithmic(5.0, 500.0, Halton(i, 7));
-    const LampAir air =
-        HomogeneousAir(sigma, sigma, {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.0});
+    const LampAir air = HomogeneousAir(sigma, sigma, tests::LobeOf(0.0));
     Lamp lamp;
     lamp.position_m = {along, across, 0.0};
     const double truth = reference::AirlightAlong(air, lamp, {.end_m = length}).radiance[0];

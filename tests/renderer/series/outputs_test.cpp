@@ -19,6 +19,7 @@
 #include "renderer/series/manifest.h"
 #include "renderer/series/video.h"
 #include "tests/fixtures/environment_variable.h"
+#include "tests/fixtures/report_files.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {
@@ -53,13 +54,6 @@ TEST(KeogramPicture, HasTheMiddleColumnsOfPicturesInOrder) {
 }
 
 UtcTime Hour(double hour) { return {61212, 3600.0 * hour}; }
-
-std::size_t CountOf(const std::string& text, const std::string& part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-    ++count;
-  return count;
-}
 
 TEST(DayPlot, CurvesHaveGapsWhereFramesHaveNoValue) {
   std::vector<PlottedMoment> moments;

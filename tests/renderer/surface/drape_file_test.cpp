@@ -18,6 +18,7 @@
 
 #include "renderer/layer.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/luminance.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {
@@ -38,10 +39,7 @@ struct TestBand {
 };
 
 /// sRGB decoding, IEC 61966-2-1, of codes up to `largest`.
-double LinearOfCode(double code, double largest) {
-  const double encoded = code / largest;
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
+double LinearOfCode(double code, double largest) { return tests::LightOfCode(code / largest); }
 
 class DrapeFile : public TemporaryFolder {
  protected:

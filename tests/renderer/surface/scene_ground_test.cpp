@@ -18,6 +18,7 @@
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/mesh_scene.h"
 #include "tests/fixtures/obj_texts.h"
 #include "tests/fixtures/raster_file.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -147,11 +148,8 @@ class AMesh : public TemporaryFolder {
  protected:
   [[nodiscard]] Scene SceneOn(const std::string& obj, double height_m,
                               bool above_ground = false) const {
-    WriteText(folder_ / "m.obj", obj);
-    Scene scene = BareScene(0.0, 0.0, 0.0, 60.0);
+    Scene scene = tests::MeshScene(BareScene(0.0, 0.0, 0.0, 60.0), folder_ / "m.obj", obj);
     scene.camera.height = {height_m, above_ground};
-    scene.terrain.kind = TerrainSource::Kind::kMesh;
-    scene.terrain.file = folder_ / "m.obj";
     return scene;
   }
 };

@@ -50,13 +50,12 @@ struct BothTables {
 
   [[nodiscard]] std::vector<float> OnGpu(const std::string& expression,
                                          const std::vector<tests::Arguments<float>>& points) const {
-    std::vector<ShaderPiece> pieces = SharedTexts();
-    for (ShaderPiece& piece : AirTableTexts()) pieces.push_back(std::move(piece));
-    return tests::EvaluateOnGpu(pieces, expression, points, [&](const ShaderProgram& program) {
+    const auto prepare = [&](const ShaderProgram& program) {
       AirTextures::Prepare(program, kFirstUnit, kBinding);
       textures.Bind(kFirstUnit, kBinding);
       program.Use();
-    });
+    };
+    return tests::EvaluateWithTexts(AirTableTexts(), expression, points, prepare);
   }
 
   MediumTables medium;

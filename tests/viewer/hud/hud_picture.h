@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -82,6 +83,10 @@ class HudPicture : public Headless {
   /// Over a grey of 0.5. Panels need two frames to find their size.
   static HdrImage Drawn(Hud& hud, const HudModel& model, int width, int height) {
     for (int frame = 0; frame < 3; ++frame) FrameOf(hud, model, Still(width, height));
+    return DrawnAsIs(hud, width, height);
+  }
+  /// Returns the same without another frame.
+  static Image DrawnAsIs(const Hud& hud, int width, int height) {
     const RenderTarget target(width, height, RenderTarget::Depth::kNone);
     target.Bind();
     glClearColor(0.5F, 0.5F, 0.5F, 1.0F);
@@ -109,6 +114,32 @@ class HudPicture : public Headless {
     }
     return box;
   }
+};
+
+/// Instruments of a flight under a mouse, over a picture of one size.
+class HudUnderMouse : public HudPicture {
+ protected:
+  HudUnderMouse(int width, int height) : width_(width), height_(height) {}
+
+  /// Draws a frame with the pointer at a place.
+  Changes At(Hud& hud, double x, double y, bool pressed) {
+    InputFrame input = Still(width_, height_);
+    input.events.pointer = PointerPlace{x, y};
+    input.events.buttons[0] = pressed;
+    return FrameOf(hud, model_, input);
+  }
+  /// Moves the pointer to a place and clicks there. Returns the requests while the button was down
+  /// and when it was released.
+  std::array<Changes, 2> Click(Hud& hud, double x, double y) {
+    static_cast<void>(At(hud, x, y, false));
+    Changes pressed = At(hud, x, y, true);
+    return {std::move(pressed), At(hud, x, y, false)};
+  }
+
+  HudModel model_ = Flying();
+
+ private:
+  int width_, height_;
 };
 
 }  // namespace alpenglow::tests

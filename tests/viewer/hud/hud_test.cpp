@@ -14,6 +14,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "tests/fixtures/flat_picture.h"
+#include "tests/fixtures/report_files.h"
 #include "tests/viewer/hud/hud_picture.h"
 #include "viewer/hud/imgui_backend.h"
 #include "viewer/hud/key_help.h"
@@ -26,22 +28,11 @@ using tests::FrameOf;
 
 constexpr int kHudWidth = 1280, kHudHeight = 720;
 
-class HudTest : public tests::HudPicture {
+class HudTest : public tests::HudUnderMouse {
  protected:
-  /// A frame with the pointer there.
-  Changes At(Hud& hud, double x, double y, bool pressed) {
-    InputFrame input = Still(kHudWidth, kHudHeight);
-    input.events.pointer = PointerPlace{x, y};
-    input.events.buttons[0] = pressed;
-    return FrameOf(hud, model_, input);
-  }
-  /// Moves there, presses and lets go: what was asked for in these two frames.
-  std::array<Changes, 2> Click(Hud& hud, double x, double y) {
-    static_cast<void>(At(hud, x, y, false));
-    Changes pressed = At(hud, x, y, true);
-    return {std::move(pressed), At(hud, x, y, false)};
-  }
-  /// Clicks along a column of the picture until that is asked for.
+  HudTest() : HudUnderMouse(kHudWidth, kHudHeight) {}
+
+  /// Clicks along a column of the picture until a click makes the request that `asked` accepts.
   template <typename Asked>
   std::optional<PointerPlace> Find(Hud& hud, double x, int from_y, int to_y, const Asked& asked) {
     const int step = from_y < to_y ? 4 : -4;
@@ -52,8 +43,6 @@ class HudTest : public tests::HudPicture {
     }
     return std::nullopt;
   }
-
-  HudModel model_ = tests::Flying();
 };
 
 TEST_F(HudTest, HiddenInstrumentsChangeNoByteOfThePicture) {
@@ -63,11 +52,7 @@ TEST_F(HudTest, HiddenInstrumentsChangeNoByteOfThePicture) {
   const HdrImage shown = Drawn(hud, model_, kHudWidth, kHudHeight);
   hud.ToggleVisible();
   const HdrImage hidden = Drawn(hud, model_, kHudWidth, kHudHeight);
-  const HdrImage grey = [] {
-    HdrImage image(kHudWidth, kHudHeight);
-    for (auto& pixel : image.rgb) pixel = {0.5F, 0.5F, 0.5F};
-    return image;
-  }();
+  const HdrImage grey = tests::FlatPicture(kHudWidth, kHudHeight, 0.5F);
   EXPECT_FALSE(Difference(grey, shown).empty());
   EXPECT_TRUE(Difference(grey, hidden).empty());
   EXPECT_FALSE(hud.Taken().mouse);
@@ -360,13 +345,6 @@ std::string WrittenHelp(int width) {
   return written;
 }
 
-std::size_t CountOf(const std::string& part, const std::string& text) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-    ++count;
-  return count;
-}
-
 TEST(KeyHelp, ListsEveryActionUnderItsHeading) {
   for (const int width : {320, 1280}) {
     const std::string written = WrittenHelp(width);
@@ -374,9 +352,9 @@ TEST(KeyHelp, ListsEveryActionUnderItsHeading) {
       const std::size_t heading = written.find(section.heading);
       ASSERT_NE(heading, std::string::npos) << section.heading;
       for (const Action& row : section.rows) {
-        EXPECT_GE(CountOf(std::string(row.help), written), 1U) << row.help << ", " << width;
+        EXPECT_GE(CountOf(written, std::string(row.help)), 1U) << row.help << ", " << width;
         EXPECT_NE(written.find(row.help, heading), std::string::npos) << row.help;
-        EXPECT_GE(CountOf(KeysText(row), written), 1U) << KeysText(row);
+        EXPECT_GE(CountOf(written, KeysText(row)), 1U) << KeysText(row);
       }
     }
   }

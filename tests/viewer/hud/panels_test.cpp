@@ -27,21 +27,10 @@ using tests::FrameOf;
 
 constexpr int kPictureWidth = 1280, kPictureHeight = 800;
 
-class PanelsTest : public tests::HudPicture {
+class PanelsTest : public tests::HudUnderMouse {
  protected:
-  Changes At(Hud& hud, double x, double y, bool pressed) {
-    InputFrame input = Still(kPictureWidth, kPictureHeight);
-    input.events.pointer = PointerPlace{x, y};
-    input.events.buttons[0] = pressed;
-    return FrameOf(hud, model_, input);
-  }
-  /// The requests while the button was down and when it was let go.
-  std::vector<Changes> Click(Hud& hud, double x, double y) {
-    static_cast<void>(At(hud, x, y, false));
-    std::vector<Changes> requests{At(hud, x, y, true)};
-    requests.push_back(At(hud, x, y, false));
-    return requests;
-  }
+  PanelsTest() : HudUnderMouse(kPictureWidth, kPictureHeight) {}
+
   Changes PressEnter(Hud& hud) {
     InputFrame input = Still(kPictureWidth, kPictureHeight);
     input.events.keys = {{GLFW_KEY_ENTER, 0, GLFW_PRESS, 0, ""},
@@ -80,8 +69,6 @@ class PanelsTest : public tests::HudPicture {
     }
     return names;
   }
-
-  HudModel model_ = tests::Flying();
 };
 
 /// A clock that shows something else everywhere.
@@ -152,18 +139,7 @@ TEST_F(PanelsTest, APanelDraggedOverTheClockMovesBack) {
   static_cast<void>(At(hud, title_x, title_y, false));
   static_cast<void>(At(hud, title_x, title_y, true));
   for (const double y : {80.0, 20.0}) static_cast<void>(At(hud, title_x - 90.0, y, true));
-  EXPECT_LT(Difference(bare,
-                       [&] {
-                         const RenderTarget target(kPictureWidth, kPictureHeight,
-                                                   RenderTarget::Depth::kNone);
-                         target.Bind();
-                         glClearColor(0.5F, 0.5F, 0.5F, 1.0F);
-                         glClear(GL_COLOR_BUFFER_BIT);
-                         hud.Paint(target.framebuffer());
-                         return target.Read();
-                       }())
-                .top,
-            clock.bottom)
+  EXPECT_LT(Difference(bare, DrawnAsIs(hud, kPictureWidth, kPictureHeight)).top, clock.bottom)
       << "while the hand holds it";
   const Box after = Difference(bare, Drawn(hud, model_, kPictureWidth, kPictureHeight));
   EXPECT_GE(after.top, clock.bottom);
@@ -324,8 +300,7 @@ std::vector<Letter> TakeLetters(Of which) {
 double LightOf(const ScreenColour& codes) {
   ScreenColour light{};
   for (std::size_t c = 0; c < 3; ++c) {
-    light[c] =
-        codes[c] <= 0.04045F ? codes[c] / 12.92F : std::pow((codes[c] + 0.055F) / 1.055F, 2.4F);
+    light[c] = static_cast<float>(tests::LightOfCode(double{codes[c]}));
   }
   return tests::Luminance(light);
 }

@@ -16,6 +16,7 @@
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/material/band_light.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/lamp_site.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/renderer/lamps/ridge.h"
 #include "tests/viewer/shaders/gpu_values.h"
@@ -29,14 +30,8 @@ namespace {
 constexpr double kLitPixel_rad = 1e-3;
 
 Light LightAt(double north_m, double east_m, double height_m, double candela) {
-  const double radius = 6371000.0;
-  Light light;
-  const Place eye = BareScene(0.0, 0.0, 0.0, 40.0).place;
-  const double latitude_rad = eye.latitude_rad() + north_m / radius;
-  light.place = PlaceFromRadians(
-      latitude_rad, eye.longitude_rad() + east_m / (radius * std::cos(latitude_rad)), 0.0);
-  light.height = {height_m, false};
-  light.intensity_cd = candela;
+  const Place place = BareScene(0.0, 0.0, 0.0, 40.0).place;
+  Light light = tests::LampNear(place, north_m, east_m, height_m, candela);
   light.radius_m = 0.1;
   return light;
 }
@@ -66,15 +61,11 @@ Scene Night(double eye_height_m, double fog_per_m, double fog_height_m) {
   return scene;
 }
 
-/// A scene before an eye, as the renderer has it and as the graphics card does.
-struct BothLamps {
+/// The lamps of a scene as the renderer and as the GPU have them.
+struct BothLamps : tests::LampSite {
   explicit BothLamps(const Scene& of) : BothLamps(of, LoadGround(of)) {}
   BothLamps(const Scene& of, SceneGround on)
-      : scene(of),
-        ground(std::move(on)),
-        medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad())),
-        colour(medium.wavelengths_nm),
-        light(scene, ground, medium, colour),
+      : LampSite(of, std::move(on)),
         lamps(scene, ground, medium),
         painter(lamps, {}, {}),
         eye_m(0.0, 0.0, ground.eye_height_m) {
@@ -83,22 +74,13 @@ struct BothLamps {
 
   [[nodiscard]] std::vector<float> OnGpu(const std::string& expression,
                                          const std::vector<tests::Arguments<float>>& points) const {
-    std::vector<ShaderPiece> pieces = SharedTexts();
-    for (const ShaderPiece& piece : painter.texts()) {
-      // No fragment, no lattice.
-      if (piece.name.find("lamp_picture") == std::string::npos) pieces.push_back(piece);
-    }
-    return tests::EvaluateOnGpu(pieces, expression, points, [&](const ShaderProgram& program) {
-      painter.Connect(program);
-      painter.Bind();
-    });
+    return tests::EvaluateWithTexts(painter.texts(), expression, points,
+                                    [&](const ShaderProgram& program) {
+                                      painter.Connect(program);
+                                      painter.Bind();
+                                    });
   }
 
-  Scene scene;
-  SceneGround ground;
-  Medium medium;
-  BandColour colour;
-  LampLight light;
   SceneLamps lamps;
   LampPainter painter;
   glm::dvec3 eye_m;

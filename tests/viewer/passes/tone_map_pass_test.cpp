@@ -19,6 +19,7 @@
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/image/white_balance.h"
+#include "tests/fixtures/flat_picture.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow::viewer {
@@ -116,14 +117,12 @@ TEST_F(ToneMapPassTest, LooksAndWhiteBalanceEqualTheRenderersWithinOneCode) {
 }
 
 TEST_F(ToneMapPassTest, PicturesOfAnySizeFillTheScreen) {
-  HdrImage image(8, 8);
-  for (auto& pixel : image.rgb) pixel = {500.0F, 800.0F, 1000.0F};
+  const std::array<float, 3> sky{500.0F, 800.0F, 1000.0F};
   const RenderTarget picture(8, 8, RenderTarget::Depth::kNone);
-  picture.Write(image);
+  picture.Write(tests::FlatPicture(8, 8, sky));
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   ToneMapPass(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
-  HdrImage even(kFrameWidth, kFrameHeight);
-  for (auto& pixel : even.rgb) pixel = image.rgb[0];
+  const HdrImage even = tests::FlatPicture(kFrameWidth, kFrameHeight, sky);
   const DisplayImage reference = Develop(even, 12.0, {.curve = ToneCurve::kAgx}),
                      shown = screen.ReadBytes();
   for (std::size_t i = 0; i < reference.rgb.size(); ++i)

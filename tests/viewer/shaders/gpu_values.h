@@ -61,4 +61,14 @@ inline std::vector<float> EvaluateOnGpu(
   return values;
 }
 
+/// Evaluates an expression that may use the shared texts and `texts`.
+inline std::vector<float> EvaluateWithTexts(
+    std::vector<ShaderPiece> texts, const std::string& expression,
+    const std::vector<Arguments<float>>& points,
+    const std::function<void(const ShaderProgram&)>& prepare = [](const ShaderProgram&) {}) {
+  std::vector<ShaderPiece> pieces = SharedTexts();
+  for (ShaderPiece& text : texts) pieces.push_back(std::move(text));
+  return EvaluateOnGpu(std::move(pieces), expression, points, prepare);
+}
+
 }  // namespace alpenglow::tests
