@@ -329,12 +329,12 @@ Aureole AureoleOf(const Atmosphere& atmosphere, double sun_elevation_deg) {
   return aureole;
 }
 
-class Aureole : public testing::TestWithParam<const char*> {};
+class AureoleOfSharpPhases : public testing::TestWithParam<const char*> {};
 
 // The bound is a third more than measured with g = 0.999. Beyond six degrees below the sun the sky
 // gets brighter towards the horizon again.
 // Hard cases 12, 23, 31.
-TEST_P(Aureole, OfASharpPhaseFunctionFallsSteadily) {
+TEST_P(AureoleOfSharpPhases, FallsSteadily) {
   constexpr std::size_t kSteady = 6;
   for (const double sun_elevation_deg : {60.5, 29.5}) {
     const Aureole aureole =
@@ -353,7 +353,7 @@ TEST_P(Aureole, OfASharpPhaseFunctionFallsSteadily) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    SharpPhases, Aureole,
+    Each, AureoleOfSharpPhases,
     testing::Values(
         "phase = \"henyey-greenstein\"\ng = 0.95\n", "phase = \"henyey-greenstein\"\ng = 0.99\n",
         "phase = \"henyey-greenstein\"\ng = 0.999\n",

@@ -212,9 +212,9 @@ TEST(MountainSurface, SnowFadesIntoAWoodByHeight) {
 }
 
 TEST(VisibleSnow, CoversMeadowsAndTheGapsOfWoods) {
-  EXPECT_DOUBLE_EQ(shared::VisibleSnow(0.8, 0.0, 0.0, 0.12), 0.8);
-  EXPECT_NEAR(shared::VisibleSnow(0.8, 1.0, 0.0, 0.12), 0.8 * 0.12, 1e-12);
-  EXPECT_NEAR(shared::VisibleSnow(1.0, 0.5, 0.0, 0.12), std::sqrt(0.12), 1e-12)
+  EXPECT_DOUBLE_EQ(shared::SnowSeen(0.8, 0.0, 0.0, 0.12), 0.8);
+  EXPECT_NEAR(shared::SnowSeen(0.8, 1.0, 0.0, 0.12), 0.8 * 0.12, 1e-12);
+  EXPECT_NEAR(shared::SnowSeen(1.0, 0.5, 0.0, 0.12), std::sqrt(0.12), 1e-12)
       << "two halves of a wood hide as the whole";
 }
 

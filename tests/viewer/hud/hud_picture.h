@@ -86,7 +86,7 @@ class HudPicture : public Headless {
     return DrawnAsIs(hud, width, height);
   }
   /// Returns the same without another frame.
-  static Image DrawnAsIs(const Hud& hud, int width, int height) {
+  static HdrImage DrawnAsIs(const Hud& hud, int width, int height) {
     const RenderTarget target(width, height, RenderTarget::Depth::kNone);
     target.Bind();
     glClearColor(0.5F, 0.5F, 0.5F, 1.0F);
