@@ -16,7 +16,7 @@
 
 namespace alpenglow::lut {
 
-/// What DisplayOptions say about the colours of a developed image.
+/// The part of DisplayOptions that determines the colours of a developed image.
 struct Look {
   ToneCurve curve = ToneCurve::kAgx;
   bool local_exposure = false;  // LocallyExposed
@@ -49,7 +49,7 @@ struct PictureView {
 /// the colours and acuity of the dark-adapted eye (night_vision.h). @param look  must be settled.
 [[nodiscard]] HdrImage Seen(const HdrImage& image, const Look& look, const PictureView& view = {});
 
-/// What DisplayOptions say about the exposure of an image.
+/// The part of DisplayOptions that determines the exposure of an image.
 struct ExposureRule {
   enum class Kind {
     kMetered,   // CameraEv100 of the image's MeterEv100
