@@ -16,8 +16,9 @@
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/program.h"
 #include "lut/report/report_panoramas.h"
-#include "lut/report/report_rays.h"
+#include "lut/report/report_refraction.h"
 #include "lut/report/report_scattering.h"
+#include "lut/report/report_transmittance.h"
 #include "lut/version.h"
 
 namespace alpenglow::lut {

@@ -90,9 +90,4 @@ class RayStudy : public ErrorStudy<ViewRay> {
   SingleScattering<float> air_;
 };
 
-/// Measures the topic for one medium.
-[[nodiscard]] ReportTopic MeasureTransmittance(const Medium& medium, const ReportEffort& effort);
-/// Measures refraction for one medium, because other media refract alike.
-[[nodiscard]] ReportTopic MeasureRefraction(const Medium& medium, const ReportEffort& effort);
-
 }  // namespace alpenglow::lut
