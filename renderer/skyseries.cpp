@@ -20,6 +20,7 @@
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/manifest.h"
+#include "renderer/series/scene_metadata.h"
 #include "renderer/series/series.h"
 #include "renderer/skyseries_commands.h"
 #include "renderer/skyseries_options.h"

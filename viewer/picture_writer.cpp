@@ -12,6 +12,7 @@
 #include "lut/image/picture_format.h"
 #include "lut/image/white_balance.h"
 #include "renderer/series/manifest.h"
+#include "renderer/series/scene_metadata.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/passes/panorama.h"
 

@@ -14,7 +14,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/picture/reference_picture.h"
 #include "renderer/scene/scene.h"
-#include "renderer/series/manifest.h"
+#include "renderer/series/scene_metadata.h"
 #include "viewer/flight/flight_controller.h"
 #include "viewer/passes/sky_painter.h"
 

@@ -12,7 +12,7 @@
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/scene.h"
 #include "renderer/scene/scene_options.h"
-#include "renderer/series/manifest.h"
+#include "renderer/series/scene_metadata.h"
 
 namespace alpenglow {
 

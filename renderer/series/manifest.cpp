@@ -3,364 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <fstream>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "atmosphere/astronomy/sky_bodies.h"
-#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/math/numerics.h"
-#include "atmosphere/medium/medium_fields.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/program.h"
 #include "lut/cli/terminal.h"
-#include "renderer/scene/scene_fields.h"
-#include "renderer/scene/scene_options.h"
-#include "renderer/terrain/land_source.h"
 
 namespace alpenglow::renderer {
-namespace {
-
-std::string TextOf(const Fnv1a& hash) { return fmt::format("{:016x}", hash.hash()); }
-
-std::string HashOfFile(const std::filesystem::path& file, const std::stop_token& stop) {
-  std::ifstream stream(file, std::ios::binary);
-  Fnv1a hash;
-  std::vector<char> block(1U << 20U);
-  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
-         stream.gcount() > 0) {
-    hash.AddBytes({block.data(), static_cast<std::size_t>(stream.gcount())});
-    if (stop.stop_requested())
-      throw InputError(fmt::format("{}: is not read to its end", file.string()));
-  }
-  if (!stream.eof()) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  return TextOf(hash);
-}
-
-std::string DegreesText(double radians) { return fmt::format("{}", radians / kRadiansPerDegree); }
-
-std::string HeightText(const Height& height) {
-  return fmt::format("{} m above the {}", height.value_m,
-                     height.above_ground ? "ground" : "ellipsoid");
-}
-
-/// Returns a value in the units of scene.toml.
-std::string ValueText(const TomlValue& value) {
-  if (const auto* const list = std::get_if<std::vector<double>>(&value))
-    return fmt::format("{}", fmt::join(*list, " "));
-  return std::visit(
-      [](const auto& one) -> std::string {
-        using Type = std::decay_t<decltype(one)>;
-        if constexpr (std::is_same_v<Type, std::vector<double>>) return "";
-        if constexpr (!std::is_same_v<Type, std::vector<double>>) return fmt::format("{}", one);
-      },
-      value);
-}
-
-/// Returns the values of all members in a table of fields.
-template <typename Object>
-Metadata ValuesOf(const TomlFields<Object>& fields, const Object& object) {
-  Metadata values;
-  for (const TomlField<Object>& field : fields.fields) {
-    if (!field.member.get) continue;
-    if (const auto value = field.member.get(object)) values[field.key] = ValueText(*value);
-  }
-  return values;
-}
-
-/// Returns the values that are recorded by name, except defaults.
-template <typename Object>
-Metadata NamedValuesOf(const TomlFields<Object>& fields, const Object& object) {
-  Metadata values;
-  for (const TomlField<Object>& field : fields.fields) {
-    if (!field.is_recorded_by_name) continue;
-    const auto value = field.member.get(object);
-    if (value && value != field.member.get(Object{})) values[field.key] = ValueText(*value);
-  }
-  return values;
-}
-
-/// Adds the values that are recorded by name, under their own keys.
-template <typename Object>
-void AddNamedValues(const TomlFields<Object>& fields, const Object& object, Metadata& metadata) {
-  for (const auto& [key, value] : NamedValuesOf(fields, object))
-    metadata["alpenglow." + key] = value;
-}
-
-template <typename Object>
-std::string NamedText(const TomlFields<Object>& fields, const Object& object) {
-  std::string text;
-  for (const auto& [key, value] : NamedValuesOf(fields, object))
-    text += fmt::format(", {} {}", key, value);
-  return text;
-}
-
-/// Returns the number of the elevation models, and a hash of their names and contents in their
-/// order.
-std::string TextOfModels(const Scene& scene, const std::stop_token& stop) {
-  const LandTiles tiles(LandSourceOf(scene));
-  Metadata files;
-  std::filesystem::path last;
-  for (const LandTile& tile : tiles.tiles()) {
-    if (std::exchange(last, tile.file) == tile.file) continue;  // another part of a large file
-    files[fmt::format("{:06} {}", files.size(), tile.file.filename().string())] =
-        HashOfFile(tile.file, stop);
-  }
-  return fmt::format("{} elevation models, hash {}", files.size(), Fingerprint(files));
-}
-
-std::string TerrainText(const Scene& scene, const FileHashes& hashes) {
-  const TerrainSource& terrain = scene.terrain;
-  switch (terrain.kind) {
-    case TerrainSource::Kind::kProceduralMountains:
-      return !terrain.centre
-                 ? "built-in range"
-                 : fmt::format("{} around {}, {}",
-                               terrain.range_seed == 0
-                                   ? "built-in range"
-                                   : fmt::format("built-in range {}", terrain.range_seed),
-                               terrain.centre->latitude_deg, terrain.centre->longitude_deg);
-    case TerrainSource::Kind::kElevationModel:
-      return fmt::format(
-          "{}, voids {}",
-          hashes.models.empty() ? hashes.names_and_hashes.at(terrain.file) : hashes.models,
-          terrain.voids == VoidPolicy::kFill ? "filled" : "open");
-    case TerrainSource::Kind::kMesh:
-      return hashes.names_and_hashes.at(terrain.file) + (terrain.up == UpAxis::kY ? ", y up" : "");
-    case TerrainSource::Kind::kNone:
-      return "none";
-  }
-  throw InternalError("unknown kind of terrain");
-}
-
-std::string LightText(const Light& light, const FileHashes& hashes) {
-  std::string text =
-      fmt::format("{} at {}, {}, {}: {} cd, {} K, radius {} m", NameOf(light.type),
-                  light.place.latitude_deg, light.place.longitude_deg, HeightText(light.height),
-                  light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
-                  light.temperature_k, light.radius_m);
-  if (light.ies) {
-    text += ", " + hashes.names_and_hashes.at(*light.ies);
-  } else if (light.type == Light::Type::kPoint) {
-    return text;
-  }
-  text += fmt::format(", heading {}, pitch {}", DegreesText(light.heading_rad),
-                      DegreesText(light.pitch_rad));
-  if (light.ies) return text;
-  return text +
-         fmt::format(", cone {} to {}", DegreesText(light.inner_rad), DegreesText(light.outer_rad));
-}
-
-/// The asymmetry parameter of droplets tells their diameter.
-std::string PhaseText(const PhaseFunction& phase) {
-  return fmt::format("{} g {}", NameOf(phase.kind), phase.g);
-}
-
-std::string LayerText(const MediumLayer& layer) {
-  return fmt::format("extinction {} per m at {}, scale height {} m, albedo {}, {}",
-                     layer.extinction_per_m,
-                     layer.base_height_m ? fmt::format("{} m", *layer.base_height_m) : "the ground",
-                     layer.scale_height_m, layer.albedo, PhaseText(layer.phase));
-}
-
-/// Returns every value of [ground].
-Metadata KeysOf(const GroundCover& ground) {
-  Metadata values = ValuesOf(GroundFields(), ground);
-  values["cover"] = fmt::format("{}", static_cast<int>(ground.kind));
-  values.erase("grain_diameter_mm");
-  values["grain_diameter_m"] = fmt::format("{}", ground.grain_diameter_m);
-  return values;
-}
-
-/// Returns every value of a [[volume]].
-/// @param grid  names and hashes of its grid's files.
-Metadata KeysOf(const Volume& volume, const std::string& grid) {
-  Metadata values = ValuesOf(VolumeFields(), volume);
-  values["height"] = HeightText(volume.height);
-  values["phase"] = PhaseText(volume.phase);
-  if (volume.grid_size) values["grid_size"] = fmt::format("{}", fmt::join(*volume.grid_size, " "));
-  values["grid"] = grid;
-  return values;
-}
-
-/// Adds the air of a scene, and what lies in it.
-void AddAirOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) {
-  const Medium& medium = scene.medium;
-  metadata["alpenglow.atmosphere"] = medium.name;
-  metadata["alpenglow.atmosphere_hash"] = fmt::format("{:016x}", MediumHash(medium));
-  metadata["alpenglow.refraction"] = NameOf(medium.refraction);
-  if (scene.town_zenith)
-    metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
-  for (const MediumLayer& layer : scene.layers)
-    metadata["alpenglow." + LayerFields().name] =
-        LayerText(layer) + NamedText(LayerFields(), layer);
-  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-    metadata[fmt::format("alpenglow.volume_{}_hash", i)] =
-        Fingerprint(KeysOf(scene.volumes[i], hashes.grids.at(i)));
-  }
-}
-
-/// Adds terrain and ground cover.
-void AddGroundOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) {
-  const TerrainSource& terrain = scene.terrain;
-  metadata["alpenglow.terrain"] = TerrainText(scene, hashes) + NamedText(TerrainFields(), terrain);
-  if (!terrain.colour.empty())
-    metadata["alpenglow.terrain_colour"] = hashes.names_and_hashes.at(terrain.colour);
-  if (!terrain.land_cover.empty())
-    metadata["alpenglow.land_cover"] = hashes.names_and_hashes.at(terrain.land_cover);
-  metadata["alpenglow.ground_hash"] = Fingerprint(KeysOf(scene.ground));
-}
-
-}  // namespace
-
-FileHashes HashFilesOf(const Scene& scene, const std::stop_token& stop) {
-  FileHashes hashes;
-  std::vector<std::filesystem::path> models;
-  if (scene.terrain.HasManyModels()) {
-    models = LandSourceOf(scene).files;
-    hashes.models = TextOfModels(scene, stop);
-  }
-  for (const NamedFile& named : FilesOf(scene)) {
-    if (std::find(models.begin(), models.end(), named.file) != models.end()) continue;
-    const auto [known, is_new] = hashes.names_and_hashes.try_emplace(named.file);
-    if (is_new)
-      known->second =
-          fmt::format("{}, hash {}", named.file.filename().string(), HashOfFile(named.file, stop));
-  }
-  for (const Volume& volume : scene.volumes) {
-    std::string& grid = hashes.grids.emplace_back();
-    for (const std::filesystem::path& file : FilesOf(volume))
-      grid += hashes.names_and_hashes.at(file) + "; ";
-  }
-  return hashes;
-}
-
-Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes) {
-  const Camera& camera = scene.camera;
-  Metadata metadata = {{"Software", ProducerText()},
-                       {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
-                       {"alpenglow.latitude_deg", fmt::format("{}", scene.place.latitude_deg)},
-                       {"alpenglow.longitude_deg", fmt::format("{}", scene.place.longitude_deg)},
-                       {"alpenglow.camera_height", HeightText(camera.height)},
-                       {"alpenglow.heading_deg", DegreesText(camera.heading_rad)},
-                       {"alpenglow.pitch_deg", DegreesText(camera.pitch_rad)},
-                       {"alpenglow.roll_deg", DegreesText(camera.roll_rad)},
-                       {"alpenglow.fov_deg", DegreesText(camera.fov_rad)}};
-  AddAirOf(scene, hashes, metadata);
-  AddGroundOf(scene, hashes, metadata);
-  if (camera.lens) {
-    const ThinLens& lens = *camera.lens;
-    metadata["alpenglow.lens"] =
-        fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
-                    lens.focus_m, lens.blades, DegreesText(lens.blade_rotation_rad));
-  }
-  AddNamedValues(CameraFields(), camera, metadata);
-  for (const TomlFields<Scene>& fields : TablesOfScene()) AddNamedValues(fields, scene, metadata);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    metadata[fmt::format("alpenglow.light_{}", i)] =
-        LightText(scene.lights[i], hashes) + NamedText(LightFields(), scene.lights[i]);
-  }
-  return metadata;
-}
-
-Metadata PoseMetadata(const CameraPose& pose) {
-  return {{"alpenglow.latitude_deg", fmt::format("{}", pose.place.latitude_deg)},
-          {"alpenglow.longitude_deg", fmt::format("{}", pose.place.longitude_deg)},
-          {"alpenglow.camera_height", HeightText({pose.place.height_m, false})},
-          {"alpenglow.heading_deg", DegreesText(pose.heading_rad)},
-          {"alpenglow.pitch_deg", DegreesText(pose.pitch_rad)},
-          {"alpenglow.roll_deg", DegreesText(pose.roll_rad)},
-          {"alpenglow.fov_deg", DegreesText(pose.fov_rad)}};
-}
-
-Metadata PictureMetadata(const Scene& scene, const FileHashes& hashes,
-                         const RenderSettings& settings) {
-  Metadata metadata = SceneMetadata(scene, hashes);
-  metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);
-  metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
-  if (settings.noise) metadata["alpenglow.noise"] = fmt::format("{}", *settings.noise);
-  metadata["alpenglow.filter"] = NameOf(settings.filter);
-  metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
-  metadata["alpenglow.effects"] = NameOf(settings.effects);
-  std::vector<std::string> layers;
-  for (const PictureLayer layer : settings.layers) layers.push_back(NameOf(layer));
-  metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(layers, ","));
-  return metadata;
-}
-
-Metadata NotesOn(const RayCount& rays, const RenderSettings& settings) {
-  const double pixels = static_cast<double>(settings.width) * settings.height;
-  return {{"alpenglow.note.rays",
-           fmt::format("{:.3f} a pixel, {} to {}", static_cast<double>(rays.rays) / pixels,
-                       rays.least, rays.most)}};
-}
-
-std::string Fingerprint(const Metadata& metadata) {
-  Fnv1a hash;
-  for (const auto& [name, value] : metadata) {
-    hash.AddBytes(name);
-    hash.AddBytes({"\0", 1});
-    hash.AddBytes(value);
-    hash.AddBytes({"\0", 1});
-  }
-  return TextOf(hash);
-}
-
-void FrameRecord::Set(std::string_view key, Value value) {
-  const auto* const text = std::get_if<std::string>(&value);
-  if (text != nullptr && text->empty()) value = std::monostate();
-  for (auto& [known, old] : values_) {
-    if (known != key) continue;
-    old = std::move(value);
-    return;
-  }
-  values_.emplace_back(key, std::move(value));
-}
-
-const FrameRecord::Value& FrameRecord::At(std::string_view key) const {
-  static const Value kUnknown;
-  for (const auto& [known, value] : values_) {
-    if (known == key) return value;
-  }
-  return kUnknown;
-}
-
-std::optional<double> FrameRecord::Number(std::string_view key) const {
-  const auto* const number = std::get_if<double>(&At(key));
-  return number != nullptr ? std::optional(*number) : std::nullopt;
-}
-
-FrameRecord RecordOf(const Frame& frame, const Place& place, const std::optional<std::string>& zone,
-                     bool has_moon) {
-  const SkyBodies bodies = SkyBodiesAt(place, frame.instant);
-  FrameRecord record;
-  record.Set("frame", frame.number);
-  record.Set("utc", FormatUtc(frame.instant));
-  record.Set("local_time", zone ? FormatInZone(frame.instant, *zone) : "");
-  record.Set("sun_azimuth_deg", bodies.sun.azimuth_deg);
-  record.Set("sun_elevation_deg", bodies.sun.elevation_deg);
-  record.Set("sun_covered", has_moon ? bodies.CoveredLight() : 0.0);
-  record.Set("moon_azimuth_deg", bodies.moon.azimuth_deg);
-  record.Set("moon_elevation_deg", bodies.moon.elevation_deg);
-  record.Set("moon_illuminated", bodies.moon.illuminated_fraction);
-  return record;
-}
-
-void AddPose(const Frame& frame, const CameraPose& pose, FrameRecord& record) {
-  record.Set("t_s", frame.path_s);
-  record.Set("latitude", pose.place.latitude_deg);
-  record.Set("longitude", pose.place.longitude_deg);
-  record.Set("height_m", pose.place.height_m);
-  record.Set("heading", pose.heading_rad / kRadiansPerDegree);
-  record.Set("pitch", pose.pitch_rad / kRadiansPerDegree);
-  record.Set("roll", pose.roll_rad / kRadiansPerDegree);
-  record.Set("fov", pose.fov_rad / kRadiansPerDegree);
-}
-
 namespace {
 
 constexpr std::array<RecordField, 8> kPoseFields{{{"t_s", "{:.6f}"},
@@ -463,6 +116,57 @@ std::string JsonObject(const FrameRecord& record, const std::vector<RecordField>
 }
 
 }  // namespace
+
+void FrameRecord::Set(std::string_view key, Value value) {
+  const auto* const text = std::get_if<std::string>(&value);
+  if (text != nullptr && text->empty()) value = std::monostate();
+  for (auto& [known, old] : values_) {
+    if (known != key) continue;
+    old = std::move(value);
+    return;
+  }
+  values_.emplace_back(key, std::move(value));
+}
+
+const FrameRecord::Value& FrameRecord::At(std::string_view key) const {
+  static const Value kUnknown;
+  for (const auto& [known, value] : values_) {
+    if (known == key) return value;
+  }
+  return kUnknown;
+}
+
+std::optional<double> FrameRecord::Number(std::string_view key) const {
+  const auto* const number = std::get_if<double>(&At(key));
+  return number != nullptr ? std::optional(*number) : std::nullopt;
+}
+
+FrameRecord RecordOf(const Frame& frame, const Place& place, const std::optional<std::string>& zone,
+                     bool has_moon) {
+  const SkyBodies bodies = SkyBodiesAt(place, frame.instant);
+  FrameRecord record;
+  record.Set("frame", frame.number);
+  record.Set("utc", FormatUtc(frame.instant));
+  record.Set("local_time", zone ? FormatInZone(frame.instant, *zone) : "");
+  record.Set("sun_azimuth_deg", bodies.sun.azimuth_deg);
+  record.Set("sun_elevation_deg", bodies.sun.elevation_deg);
+  record.Set("sun_covered", has_moon ? bodies.CoveredLight() : 0.0);
+  record.Set("moon_azimuth_deg", bodies.moon.azimuth_deg);
+  record.Set("moon_elevation_deg", bodies.moon.elevation_deg);
+  record.Set("moon_illuminated", bodies.moon.illuminated_fraction);
+  return record;
+}
+
+void AddPose(const Frame& frame, const CameraPose& pose, FrameRecord& record) {
+  record.Set("t_s", frame.path_s);
+  record.Set("latitude", pose.place.latitude_deg);
+  record.Set("longitude", pose.place.longitude_deg);
+  record.Set("height_m", pose.place.height_m);
+  record.Set("heading", pose.heading_rad / kRadiansPerDegree);
+  record.Set("pitch", pose.pitch_rad / kRadiansPerDegree);
+  record.Set("roll", pose.roll_rad / kRadiansPerDegree);
+  record.Set("fov", pose.fov_rad / kRadiansPerDegree);
+}
 
 Metadata HeaderOf(const FrameRecord& record) {
   Metadata metadata;

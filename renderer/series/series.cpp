@@ -25,6 +25,7 @@
 #include "renderer/series/frame_exposure.h"
 #include "renderer/series/keogram.h"
 #include "renderer/series/manifest.h"
+#include "renderer/series/scene_metadata.h"
 #include "renderer/series/video.h"
 
 namespace alpenglow::renderer {

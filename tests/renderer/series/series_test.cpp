@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/series/series.h"
+#include "renderer/series/scene_metadata.h"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
