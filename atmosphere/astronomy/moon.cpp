@@ -48,24 +48,6 @@ double LogReflectance(const Filter& filter, double angle_rad) {
          d[2] * std::cos((degrees + 30.5858) / 16.7498);
 }
 
-}  // namespace
-
-double MoonReflectance(double phase_angle_rad, double wavelength_nm) {
-  constexpr double kLast_rad = 150.0 * kRadiansPerDegree;
-  const double angle_rad = std::min(phase_angle_rad, kLast_rad);
-  const auto above = std::find_if(kFilters.begin() + 1, kFilters.end() - 1, [&](const Filter& f) {
-    return f.wavelength_nm >= wavelength_nm;
-  });
-  const auto below = above - 1;
-  const double share = std::clamp(
-      (wavelength_nm - below->wavelength_nm) / (above->wavelength_nm - below->wavelength_nm), 0.0,
-      1.0);
-  return (1.0 - share) * std::exp(LogReflectance(*below, angle_rad)) +
-         share * std::exp(LogReflectance(*above, angle_rad));
-}
-
-namespace {
-
 // Returns the geometric state of the moon; bodies move about the barycentre.
 BodyState MoonOf(const BodyState& earth, const UtcTime& instant, double delta_t_s) {
   const BodyState moon = TabulatedMoonFromEarth(TerrestrialTimeAt(instant, delta_t_s));
@@ -139,7 +121,46 @@ std::optional<UtcTime> NextChange(const Place& place, const UtcTime& after, bool
   return std::nullopt;
 }
 
+constexpr double kWavelength_nm = 550.0;
+
+// Returns the light of a Lommel-Seeliger sphere, relative to full phase:
+// 1 - sin(a/2) tan(a/2) ln cot(a/4).
+double SpherePhase(double angle_rad) {
+  if (angle_rad < 1e-6) return 1.0;
+  const double half = 0.5 * angle_rad;
+  return 1.0 + std::sin(half) * std::tan(half) * std::log(std::tan(0.5 * half));
+}
+
+// Returns the irradiance of earthlight at the moon, relative to that of sunlight there.
+double EarthIrradiance(const MoonPosition& moon) {
+  constexpr double kGeometricAlbedo = 0.37;
+  const double angle = kPi - moon.phase_angle_rad();
+  const double share = kEarthMeanRadius_m / moon.distance_m;
+  return kGeometricAlbedo * share * share * (std::sin(angle) + (kPi - angle) * std::cos(angle)) /
+         kPi;
+}
+
+// Returns the irradiance of sunlight at the moon, relative to that at the earth.
+double SunlightAt(const MoonPosition& moon, double earth_sun_au) {
+  const double inverse_depth = earth_sun_au / moon.sun_distance_au;
+  return inverse_depth * inverse_depth;
+}
+
 }  // namespace
+
+double MoonReflectance(double phase_angle_rad, double wavelength_nm) {
+  constexpr double kLast_rad = 150.0 * kRadiansPerDegree;
+  const double angle_rad = std::min(phase_angle_rad, kLast_rad);
+  const auto above = std::find_if(kFilters.begin() + 1, kFilters.end() - 1, [&](const Filter& f) {
+    return f.wavelength_nm >= wavelength_nm;
+  });
+  const auto below = above - 1;
+  const double share = std::clamp(
+      (wavelength_nm - below->wavelength_nm) / (above->wavelength_nm - below->wavelength_nm), 0.0,
+      1.0);
+  return (1.0 - share) * std::exp(LogReflectance(*below, angle_rad)) +
+         share * std::exp(LogReflectance(*above, angle_rad));
+}
 
 MoonPosition TrueMoonAt(const Place& place, const UtcTime& instant) {
   return TrueMoonAt(place, instant, DeltaT(instant));
@@ -223,35 +244,6 @@ std::optional<UtcTime> NextMoonEvent(MoonEvent event, const Place& place, const 
   }
   throw InternalError("unknown event of the moon");
 }
-
-namespace {
-
-constexpr double kWavelength_nm = 550.0;
-
-// Returns the light of a Lommel-Seeliger sphere, relative to full phase:
-// 1 - sin(a/2) tan(a/2) ln cot(a/4).
-double SpherePhase(double angle_rad) {
-  if (angle_rad < 1e-6) return 1.0;
-  const double half = 0.5 * angle_rad;
-  return 1.0 + std::sin(half) * std::tan(half) * std::log(std::tan(0.5 * half));
-}
-
-// Returns the irradiance of earthlight at the moon, relative to that of sunlight there.
-double EarthIrradiance(const MoonPosition& moon) {
-  constexpr double kGeometricAlbedo = 0.37;
-  const double angle = kPi - moon.phase_angle_rad();
-  const double share = kEarthMeanRadius_m / moon.distance_m;
-  return kGeometricAlbedo * share * share * (std::sin(angle) + (kPi - angle) * std::cos(angle)) /
-         kPi;
-}
-
-// Returns the irradiance of sunlight at the moon, relative to that at the earth.
-double SunlightAt(const MoonPosition& moon, double earth_sun_au) {
-  const double inverse_depth = earth_sun_au / moon.sun_distance_au;
-  return inverse_depth * inverse_depth;
-}
-
-}  // namespace
 
 MoonDisk MoonDiskOf(const MoonPosition& moon, const LightDirection& direction,
                     const glm::dvec3& to_sun, double earth_sun_au) {

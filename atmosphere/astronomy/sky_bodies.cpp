@@ -107,6 +107,16 @@ std::optional<double> NearestTime(const Pair& pair, double end_s) {
   return std::nullopt;
 }
 
+/// Raises a body, a SunInSky or MoonPosition, by refraction.
+template <typename Body>
+Body Lifted(Body body, double height_m, const BendingAir& air) {
+  const double true_rad = body.elevation_rad();
+  const double lift_rad = RefractionFromHeight(air, true_rad, height_m);
+  body.lower_for_air_deg = (lift_rad - LiftForAir(air, true_rad)) / kRadiansPerDegree;
+  body.elevation_deg += lift_rad / kRadiansPerDegree;
+  return body;
+}
+
 }  // namespace
 
 double EclipsedDisk::Magnitude() const {
@@ -203,20 +213,6 @@ std::optional<UtcTime> InstantOf(EclipseEvent event, const SolarEclipse& eclipse
   }
   throw InternalError("unknown event of an eclipse");
 }
-
-namespace {
-
-/// Raises a body, a SunInSky or MoonPosition, by refraction.
-template <typename Body>
-Body Lifted(Body body, double height_m, const BendingAir& air) {
-  const double true_rad = body.elevation_rad();
-  const double lift_rad = RefractionFromHeight(air, true_rad, height_m);
-  body.lower_for_air_deg = (lift_rad - LiftForAir(air, true_rad)) / kRadiansPerDegree;
-  body.elevation_deg += lift_rad / kRadiansPerDegree;
-  return body;
-}
-
-}  // namespace
 
 SunInSky Refracted(const SunInSky& sun, double height_m, const BendingAir& air) {
   return Lifted(sun, height_m, air);

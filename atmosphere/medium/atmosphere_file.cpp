@@ -543,18 +543,6 @@ class AtmosphereFile {
   bool reversed_ = false;
 };
 
-}  // namespace
-
-Medium MediumFromToml(std::string_view text, const std::string& origin, const MediumUse& use) {
-  return AtmosphereFile(text, origin, use).Read();
-}
-
-Medium ReadMedium(const std::filesystem::path& file, const MediumUse& use) {
-  return MediumFromToml(ReadTextFile(file), file.string(), use);
-}
-
-namespace {
-
 std::string ListOf(const std::vector<double>& values) {
   return fmt::format("[{}]", fmt::join(values, ", "));
 }
@@ -618,6 +606,14 @@ std::string LinesOf(const TomlFields<Medium>& section, const Medium& medium) {
 }
 
 }  // namespace
+
+Medium MediumFromToml(std::string_view text, const std::string& origin, const MediumUse& use) {
+  return AtmosphereFile(text, origin, use).Read();
+}
+
+Medium ReadMedium(const std::filesystem::path& file, const MediumUse& use) {
+  return MediumFromToml(ReadTextFile(file), file.string(), use);
+}
 
 std::string TomlFromMedium(const Medium& medium) {
   std::string text = LinesOf(TopFieldsOfMedium(), medium);

@@ -29,30 +29,6 @@ Fault OutOfRange(const std::string& key, double value, const Range& range) {
       key, fmt::format("{} is {}; it must lie in [{}, {}]", key, value, range.low, range.high)};
 }
 
-}  // namespace
-
-std::optional<MediumFault> FaultOfWavelengths(const std::vector<double>& wavelengths_nm,
-                                              const MediumUse& use) {
-  const std::string key = "spectrum.wavelengths_nm";
-  if (wavelengths_nm.empty() || wavelengths_nm.size() > use.most_wavelengths) {
-    return MediumFault{
-        key, fmt::format("{} has {} values; it must have 1 to {}{}{}", key, wavelengths_nm.size(),
-                         use.most_wavelengths, use.purpose.empty() ? "" : " for ", use.purpose)};
-  }
-  for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
-    if (Fault fault = OutOfRange(key, wavelengths_nm[i], ranges::kWavelength_nm)) return fault;
-    if (i > 0 && !(wavelengths_nm[i] > wavelengths_nm[i - 1])) {
-      return MediumFault{key, fmt::format("{} has {} after {}; it must be strictly ordered", key,
-                                          wavelengths_nm[i], wavelengths_nm[i - 1])};
-    }
-  }
-  if (!use.shows_colours) return std::nullopt;
-  if (const auto fault = FaultOfColours(wavelengths_nm)) return MediumFault{key, *fault};
-  return std::nullopt;
-}
-
-namespace {
-
 Fault FaultOfList(const std::string& key, const std::vector<double>& values, const TomlType& type,
                   const Medium& medium) {
   if (values.size() != medium.wavelengths_nm.size()) {
@@ -306,6 +282,26 @@ bool AllShareOnePhase(const Medium& medium) {
 }
 
 }  // namespace
+
+std::optional<MediumFault> FaultOfWavelengths(const std::vector<double>& wavelengths_nm,
+                                              const MediumUse& use) {
+  const std::string key = "spectrum.wavelengths_nm";
+  if (wavelengths_nm.empty() || wavelengths_nm.size() > use.most_wavelengths) {
+    return MediumFault{
+        key, fmt::format("{} has {} values; it must have 1 to {}{}{}", key, wavelengths_nm.size(),
+                         use.most_wavelengths, use.purpose.empty() ? "" : " for ", use.purpose)};
+  }
+  for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
+    if (Fault fault = OutOfRange(key, wavelengths_nm[i], ranges::kWavelength_nm)) return fault;
+    if (i > 0 && !(wavelengths_nm[i] > wavelengths_nm[i - 1])) {
+      return MediumFault{key, fmt::format("{} has {} after {}; it must be strictly ordered", key,
+                                          wavelengths_nm[i], wavelengths_nm[i - 1])};
+    }
+  }
+  if (!use.shows_colours) return std::nullopt;
+  if (const auto fault = FaultOfColours(wavelengths_nm)) return MediumFault{key, *fault};
+  return std::nullopt;
+}
 
 std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering) {
   std::vector<double> values;

@@ -25,26 +25,6 @@ double DipToAltitude(double z, double h, double radius) {
   return DipOfHorizon(std::max(h - z, 0.0), radius + h);
 }
 
-}  // namespace
-
-AirMap::AirMap(const Medium& medium, double altitude_m, double twilight_fall_)
-    : altitude(std::max(altitude_m, 0.0) / kMetresPerKilometre),
-      top(medium.atmosphere_height_m / kMetresPerKilometre),
-      radius(medium.planet_radius_m / kMetresPerKilometre),
-      horizon_dip(DipToAltitude(0.0, altitude, radius)),
-      sky_range(horizon_dip + (altitude > top ? -DipToAltitude(top, altitude, radius) : 0.5 * kPi)),
-      air_sky_range(horizon_dip +
-                    (altitude > ceiling ? -DipToAltitude(ceiling, altitude, radius) : 0.5 * kPi)),
-      ground_range(0.5 * kPi - horizon_dip),
-      twilight_fall(twilight_fall_),
-      twilight_reference(altitude > ceiling ? radius : radius + altitude) {
-  // An eye above all land sees the air below the ceiling through all of the air above it.
-  const double layers = altitude * kMetresPerKilometre / medium.rayleigh_scale_height_m;
-  sky_crowding = ground_crowding = altitude > ceiling ? 0.0 : 6.0 / (1.0 + layers) - 2.0;
-}
-
-namespace {
-
 constexpr std::size_t kBands = 4;
 constexpr int kPhaseNodes = 4096;
 constexpr int kSunCosines = 256, kSunAltitudes = 64;
@@ -162,6 +142,22 @@ std::array<glm::vec4, 2> SingleMix(const SingleScattering<float>& air, const Air
 }
 
 }  // namespace
+
+AirMap::AirMap(const Medium& medium, double altitude_m, double twilight_fall_)
+    : altitude(std::max(altitude_m, 0.0) / kMetresPerKilometre),
+      top(medium.atmosphere_height_m / kMetresPerKilometre),
+      radius(medium.planet_radius_m / kMetresPerKilometre),
+      horizon_dip(DipToAltitude(0.0, altitude, radius)),
+      sky_range(horizon_dip + (altitude > top ? -DipToAltitude(top, altitude, radius) : 0.5 * kPi)),
+      air_sky_range(horizon_dip +
+                    (altitude > ceiling ? -DipToAltitude(ceiling, altitude, radius) : 0.5 * kPi)),
+      ground_range(0.5 * kPi - horizon_dip),
+      twilight_fall(twilight_fall_),
+      twilight_reference(altitude > ceiling ? radius : radius + altitude) {
+  // An eye above all land sees the air below the ceiling through all of the air above it.
+  const double layers = altitude * kMetresPerKilometre / medium.rayleigh_scale_height_m;
+  sky_crowding = ground_crowding = altitude > ceiling ? 0.0 : 6.0 / (1.0 + layers) - 2.0;
+}
 
 // Over the point of the eye's horizon the lowest beam has the height R (1 / cos(angle) - 1), where
 // `angle` is the depth of the sun below that horizon.

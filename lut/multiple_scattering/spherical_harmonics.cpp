@@ -52,25 +52,6 @@ std::array<float, kMaxDegree + 1> CosineMultiples(int degree, float cosine) {
   return values;
 }
 
-}  // namespace
-
-Moments SphericalHarmonics(int degree, float mu, float cos_azimuth) {
-  Moments y = LegendreTerms(degree, mu);
-  const auto cosines = CosineMultiples(degree, cos_azimuth);
-  for (int l = 0; l <= degree; ++l) {
-    for (int m = 0; m <= l; ++m) y[MomentIndex(l, m)] *= cosines[static_cast<std::size_t>(m)];
-  }
-  return y;
-}
-
-float AzimuthCosine(float mu, float mu_s, float nu) {
-  const float sines =
-      std::sqrt(std::max((1.0F - mu) * (1.0F + mu) * (1.0F - mu_s) * (1.0F + mu_s), 1e-12F));
-  return shared::AzimuthCosine(mu, mu_s, nu, sines);
-}
-
-namespace {
-
 // Returns the edges of panels, as ascending cosines. The phase function and the Legendre
 // polynomials up to `degree` are smooth on the scale of each panel: panels are at most 40 / degree
 // wide and shrink towards both ends of the axis, so that lobes a microradian wide are resolved.
@@ -204,6 +185,21 @@ std::vector<double> IntegratedCoefficients(const PhaseFunction& phase, int degre
 }
 
 }  // namespace
+
+Moments SphericalHarmonics(int degree, float mu, float cos_azimuth) {
+  Moments y = LegendreTerms(degree, mu);
+  const auto cosines = CosineMultiples(degree, cos_azimuth);
+  for (int l = 0; l <= degree; ++l) {
+    for (int m = 0; m <= l; ++m) y[MomentIndex(l, m)] *= cosines[static_cast<std::size_t>(m)];
+  }
+  return y;
+}
+
+float AzimuthCosine(float mu, float mu_s, float nu) {
+  const float sines =
+      std::sqrt(std::max((1.0F - mu) * (1.0F + mu) * (1.0F - mu_s) * (1.0F + mu_s), 1e-12F));
+  return shared::AzimuthCosine(mu, mu_s, nu, sines);
+}
 
 std::vector<double> LegendreSeries(int degree, double nu) {
   std::vector<double> value(static_cast<std::size_t>(degree) + 1);

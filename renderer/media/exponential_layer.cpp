@@ -21,6 +21,64 @@ double ThinAltitude(const LayerShape& shape) {
   return std::min(shape.base_m - shape.scale_height_m * std::log(kThin), shape.top_m);
 }
 
+/// Altitude of a point, and the cosine between the vertical there and a direction.
+struct PointOnRay {
+  double altitude_m, mu;
+};
+
+PointOnRay PointOn(const ExponentialLayer& layer, const glm::dvec3& point,
+                   const glm::dvec3& direction, double planet_radius_m) {
+  const double altitude = layer.AltitudeOf(point);
+  const double mu = glm::dot(point + glm::dvec3(0.0, 0.0, planet_radius_m), direction) /
+                    (planet_radius_m + altitude);
+  return {altitude, std::clamp(mu, -1.0, 1.0)};
+}
+
+double PerigeeOf(const PointOnRay& at, double planet_radius_m) {
+  return at.altitude_m - (planet_radius_m + at.altitude_m) * (1.0 - std::sqrt(1.0 - at.mu * at.mu));
+}
+
+MediumOptics OpticsOf(const MediumLayer& layer, std::size_t bands) {
+  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands),
+                      layer.phase};
+  for (std::size_t band = 0; band < bands; ++band) {
+    optics.extinction_per_m[band] = layer.extinction_per_m;
+    optics.scattering_per_m[band] = layer.extinction_per_m * layer.albedo;
+  }
+  return optics;
+}
+
+/// Returns the altitude of the lowest ground under a layer: that of the terrain, or of the planet
+/// around it if the layer lies wholly below the terrain; no value if there is no layer above the
+/// ground.
+std::optional<double> BottomOf(const ExponentialLayer& layer, const SceneGround& ground) {
+  std::vector<double> lowest_m;
+  if (ground.terrain) {
+    lowest_m.push_back(std::numeric_limits<double>::infinity());
+    for (const auto& [x, y, z] : ground.terrain->mesh().positions) {
+      lowest_m.front() = std::min(lowest_m.front(), layer.AltitudeOf({x, y, z}));
+    }
+  }
+  lowest_m.push_back(0.0);
+  for (const double lowest : lowest_m) {
+    const double bottom = std::max(layer.base_m(), lowest);
+    if (layer.ColumnAbove(bottom) > 0.0) return bottom;
+  }
+  return std::nullopt;
+}
+
+/// Returns the altitudes of a layer; no value if it lies wholly below the ground.
+std::optional<LayerShape> ShapeOf(const MediumLayer& layer, const SceneGround& ground,
+                                  const Medium& medium) {
+  LayerShape shape;
+  shape.base_m = layer.base_height_m.value_or(TerrainTop(ground, 0.0, 0.0).value_or(0.0));
+  shape.scale_height_m = layer.scale_height_m;
+  shape.planet_radius_m = medium.planet_radius_m;
+  shape.top_m = medium.atmosphere_height_m;
+  shape.bottom_m = BottomOf(ExponentialLayer(shape), ground);
+  return shape.bottom_m ? std::optional(shape) : std::nullopt;
+}
+
 }  // namespace
 
 ExponentialLayer::ExponentialLayer(const LayerShape& shape, MediumOptics optics)
@@ -55,27 +113,6 @@ double ExponentialLayer::ColumnUp(double altitude_m, double mu) const {
   return shared::LayerColumnUp(altitude_m, mu, DensityAtAltitude(altitude_m), shape_.scale_height_m,
                                shape_.planet_radius_m);
 }
-
-namespace {
-
-/// Altitude of a point, and the cosine between the vertical there and a direction.
-struct PointOnRay {
-  double altitude_m, mu;
-};
-
-PointOnRay PointOn(const ExponentialLayer& layer, const glm::dvec3& point,
-                   const glm::dvec3& direction, double planet_radius_m) {
-  const double altitude = layer.AltitudeOf(point);
-  const double mu = glm::dot(point + glm::dvec3(0.0, 0.0, planet_radius_m), direction) /
-                    (planet_radius_m + altitude);
-  return {altitude, std::clamp(mu, -1.0, 1.0)};
-}
-
-double PerigeeOf(const PointOnRay& at, double planet_radius_m) {
-  return at.altitude_m - (planet_radius_m + at.altitude_m) * (1.0 - std::sqrt(1.0 - at.mu * at.mu));
-}
-
-}  // namespace
 
 double ExponentialLayer::ColumnToSpace(const glm::dvec3& point, const glm::dvec3& direction) const {
   const PointOnRay at = PointOn(*this, point, direction, shape_.planet_radius_m);
@@ -129,51 +166,6 @@ double ExponentialLayer::LargestBetween(const glm::dvec3& from, const glm::dvec3
 std::unique_ptr<const LitMedium> ExponentialLayer::LitBy(const MediaSources& sources) const {
   return std::make_unique<LitLayer>(*this, sources);
 }
-
-namespace {
-
-MediumOptics OpticsOf(const MediumLayer& layer, std::size_t bands) {
-  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands),
-                      layer.phase};
-  for (std::size_t band = 0; band < bands; ++band) {
-    optics.extinction_per_m[band] = layer.extinction_per_m;
-    optics.scattering_per_m[band] = layer.extinction_per_m * layer.albedo;
-  }
-  return optics;
-}
-
-/// Returns the altitude of the lowest ground under a layer: that of the terrain, or of the planet
-/// around it if the layer lies wholly below the terrain; no value if there is no layer above the
-/// ground.
-std::optional<double> BottomOf(const ExponentialLayer& layer, const SceneGround& ground) {
-  std::vector<double> lowest_m;
-  if (ground.terrain) {
-    lowest_m.push_back(std::numeric_limits<double>::infinity());
-    for (const auto& [x, y, z] : ground.terrain->mesh().positions) {
-      lowest_m.front() = std::min(lowest_m.front(), layer.AltitudeOf({x, y, z}));
-    }
-  }
-  lowest_m.push_back(0.0);
-  for (const double lowest : lowest_m) {
-    const double bottom = std::max(layer.base_m(), lowest);
-    if (layer.ColumnAbove(bottom) > 0.0) return bottom;
-  }
-  return std::nullopt;
-}
-
-/// Returns the altitudes of a layer; no value if it lies wholly below the ground.
-std::optional<LayerShape> ShapeOf(const MediumLayer& layer, const SceneGround& ground,
-                                  const Medium& medium) {
-  LayerShape shape;
-  shape.base_m = layer.base_height_m.value_or(TerrainTop(ground, 0.0, 0.0).value_or(0.0));
-  shape.scale_height_m = layer.scale_height_m;
-  shape.planet_radius_m = medium.planet_radius_m;
-  shape.top_m = medium.atmosphere_height_m;
-  shape.bottom_m = BottomOf(ExponentialLayer(shape), ground);
-  return shape.bottom_m ? std::optional(shape) : std::nullopt;
-}
-
-}  // namespace
 
 MediaList LayersOf(const Scene& scene, const SceneGround& ground, const Medium& medium) {
   MediaList layers;

@@ -61,6 +61,65 @@ std::optional<LineSpan> InUnitBall(const UnitLine& line, double length_m) {
   return span;
 }
 
+// Returns the value of a band from a list with one value, or one per band.
+double ValueAt(const std::vector<double>& values, std::size_t band) {
+  return values.size() == 1 ? values.front() : values[band];
+}
+
+MediumOptics OpticsOf(const Volume& volume, const std::vector<double>& wavelengths_nm) {
+  const std::size_t bands = wavelengths_nm.size();
+  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands),
+                      volume.phase};
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double extinction = ValueAt(volume.extinction_per_m, band);
+    const double albedo = ValueAt(volume.albedo, band);
+    optics.extinction_per_m[band] = extinction;
+    optics.scattering_per_m[band] = extinction * albedo;
+    optics.emission_per_m[band] = ValueAt(volume.emission_per_m, band);
+    // Kirchhoff's law: absorption implies emission.
+    if (volume.temperature_k) {
+      optics.emission_per_m[band] += extinction * (1.0 - albedo) *
+                                     BlackBodyRadiance(wavelengths_nm[band], *volume.temperature_k);
+    }
+  }
+  return optics;
+}
+
+VolumePlacement PlacementOf(const Volume& volume, const SceneGround& ground) {
+  Place place = volume.place;
+  if (!volume.height.above_ground) place.height_m = volume.height.value_m;
+  VolumePlacement placement;
+  placement.bottom = ground.frame.EnuFromGeodetic(place).xyz;
+  place.height_m += 1000.0;
+  placement.up = (ground.frame.EnuFromGeodetic(place).xyz - placement.bottom) / 1000.0;
+  if (volume.height.above_ground) {
+    placement.bottom.z =
+        TerrainTop(ground, placement.bottom.x, placement.bottom.y).value_or(placement.bottom.z);
+    placement.bottom += volume.height.value_m * placement.up;
+  }
+  const glm::dvec3 ahead(std::sin(volume.heading_rad), std::cos(volume.heading_rad), 0.0);
+  placement.up = glm::normalize(placement.up);
+  placement.ahead = glm::normalize(ahead - glm::dot(ahead, placement.up) * placement.up);
+  placement.across = glm::cross(placement.ahead, placement.up);
+  placement.size_m = {volume.size_m[0], volume.size_m[1], volume.size_m[2]};
+  placement.shape = volume.shape;
+  return placement;
+}
+
+std::shared_ptr<const VolumeGrid> GridOf(const Volume& volume) {
+  if (volume.grid.empty()) return nullptr;
+  return std::make_shared<const VolumeGrid>(
+      volume.grid_size ? ReadRawGrid(volume.grid, *volume.grid_size) : ReadNrrd(volume.grid));
+}
+
+/// Returns whether a volume neither attenuates nor emits. Cutting rays at it would only add
+/// rounding errors.
+bool IsVoid(const Volume& volume) {
+  const auto is_zero = [](double value) { return value == 0.0; };
+  return std::all_of(volume.extinction_per_m.begin(), volume.extinction_per_m.end(), is_zero) &&
+         std::all_of(volume.emission_per_m.begin(), volume.emission_per_m.end(), is_zero);
+}
+
 }  // namespace
 
 LocalVolume::LocalVolume(const VolumePlacement& placement, std::optional<double> scale_height_m,
@@ -150,69 +209,6 @@ double LocalVolume::Column(const glm::dvec3& origin, const glm::dvec3& direction
 std::unique_ptr<const LitMedium> LocalVolume::LitBy(const MediaSources& sources) const {
   return std::make_unique<LitVolume>(*this, sources);
 }
-
-namespace {
-
-// Returns the value of a band from a list with one value, or one per band.
-double ValueAt(const std::vector<double>& values, std::size_t band) {
-  return values.size() == 1 ? values.front() : values[band];
-}
-
-MediumOptics OpticsOf(const Volume& volume, const std::vector<double>& wavelengths_nm) {
-  const std::size_t bands = wavelengths_nm.size();
-  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands),
-                      volume.phase};
-  for (std::size_t band = 0; band < bands; ++band) {
-    const double extinction = ValueAt(volume.extinction_per_m, band);
-    const double albedo = ValueAt(volume.albedo, band);
-    optics.extinction_per_m[band] = extinction;
-    optics.scattering_per_m[band] = extinction * albedo;
-    optics.emission_per_m[band] = ValueAt(volume.emission_per_m, band);
-    // Kirchhoff's law: absorption implies emission.
-    if (volume.temperature_k) {
-      optics.emission_per_m[band] += extinction * (1.0 - albedo) *
-                                     BlackBodyRadiance(wavelengths_nm[band], *volume.temperature_k);
-    }
-  }
-  return optics;
-}
-
-VolumePlacement PlacementOf(const Volume& volume, const SceneGround& ground) {
-  Place place = volume.place;
-  if (!volume.height.above_ground) place.height_m = volume.height.value_m;
-  VolumePlacement placement;
-  placement.bottom = ground.frame.EnuFromGeodetic(place).xyz;
-  place.height_m += 1000.0;
-  placement.up = (ground.frame.EnuFromGeodetic(place).xyz - placement.bottom) / 1000.0;
-  if (volume.height.above_ground) {
-    placement.bottom.z =
-        TerrainTop(ground, placement.bottom.x, placement.bottom.y).value_or(placement.bottom.z);
-    placement.bottom += volume.height.value_m * placement.up;
-  }
-  const glm::dvec3 ahead(std::sin(volume.heading_rad), std::cos(volume.heading_rad), 0.0);
-  placement.up = glm::normalize(placement.up);
-  placement.ahead = glm::normalize(ahead - glm::dot(ahead, placement.up) * placement.up);
-  placement.across = glm::cross(placement.ahead, placement.up);
-  placement.size_m = {volume.size_m[0], volume.size_m[1], volume.size_m[2]};
-  placement.shape = volume.shape;
-  return placement;
-}
-
-std::shared_ptr<const VolumeGrid> GridOf(const Volume& volume) {
-  if (volume.grid.empty()) return nullptr;
-  return std::make_shared<const VolumeGrid>(
-      volume.grid_size ? ReadRawGrid(volume.grid, *volume.grid_size) : ReadNrrd(volume.grid));
-}
-
-/// Returns whether a volume neither attenuates nor emits. Cutting rays at it would only add
-/// rounding errors.
-bool IsVoid(const Volume& volume) {
-  const auto is_zero = [](double value) { return value == 0.0; };
-  return std::all_of(volume.extinction_per_m.begin(), volume.extinction_per_m.end(), is_zero) &&
-         std::all_of(volume.emission_per_m.begin(), volume.emission_per_m.end(), is_zero);
-}
-
-}  // namespace
 
 MediaList VolumesOf(const Scene& scene, const SceneGround& ground, const Medium& medium) {
   MediaList volumes;

@@ -289,16 +289,6 @@ class March {
   std::vector<MarchedPiece> done_;
 };
 
-}  // namespace
-
-MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
-                        const glm::dvec3& direction, double length_m, const MediaSource& source,
-                        double tolerance, std::span<const double> cuts_m) {
-  return March(media, origin, direction, length_m, source, tolerance, cuts_m).Run();
-}
-
-namespace {
-
 /// A stretch of media within which light is assumed to increase linearly.
 struct Stretch {
   double begin_m, end_m;
@@ -334,6 +324,12 @@ void Extend(const MarchedPiece& piece, Behind behind, std::vector<Stretch>& stre
 }
 
 }  // namespace
+
+MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
+                        const glm::dvec3& direction, double length_m, const MediaSource& source,
+                        double tolerance, std::span<const double> cuts_m) {
+  return March(media, origin, direction, length_m, source, tolerance, cuts_m).Run();
+}
 
 BandLight DimmedByMedia(const std::vector<MarchedPiece>& pieces,
                         const std::function<BandLight(double)>& upto, const BandLight& whole,

@@ -155,6 +155,49 @@ class AirTo {
   SunlitPath path_;
 };
 
+/// Returns the light of the air that arrives through media.
+AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& air,
+                         const AirAlongRay& whole) {
+  AirAlongRay left = whole;
+  left.inscatter = DimmedByMedia(
+      pieces, [&](double m) { return air(m).inscatter; }, whole.inscatter, Behind::kAll);
+  if (!whole.polarised) return left;
+  // Q and U can fall with distance, but the light behind an analyser, I + Q and I + U, increases.
+  const auto dimmed = [&](BandLight PolarisedLight::*part) {
+    const auto passed = [&](const AirAlongRay& lit) {
+      return lit.inscatter + *lit.polarised.*part;
+    };
+    return DimmedByMedia(
+               pieces, [&](double m) { return passed(air(m)); }, passed(whole), Behind::kAll) +
+           -1.0F * left.inscatter;
+  };
+  left.polarised = {dimmed(&PolarisedLight::q), dimmed(&PolarisedLight::u)};
+  return left;
+}
+
+/// Adds the light of one source in air and media. The first source also determines the
+/// transmittance and the pieces of media.
+void AddSource(const FrameContext& frame, const FrameLight& source, bool is_first,
+               const AirRay& through, SharedSegmentAir& rays) {
+  const AirTo air(frame, source, rays.kind, through);
+  AirAlongRay lit = air(std::numeric_limits<double>::infinity());
+  if (is_first) rays.media = BandLight(lit.inscatter.count);
+  if (source.media) {
+    MarchedLight marched = source.media->Along(frame.camera().eye(), through.direction,
+                                               through.length_m, air.sunlit());
+    lit = ThroughMedia(marched.pieces, air, lit);
+    lit.transmittance = lit.transmittance * marched.transmittance;
+    rays.media = rays.media + marched.radiance;
+    if (is_first) rays.pieces = std::move(marched.pieces);
+  }
+  if (is_first) {
+    rays.air = std::move(lit);
+    return;
+  }
+  rays.air.inscatter = rays.air.inscatter + source.by_sun * lit.inscatter;
+  if (lit.polarised) rays.air.polarised = *rays.air.polarised + source.by_sun * *lit.polarised;
+}
+
 }  // namespace
 
 SharedSegmentAir SharedSegmentAir::Of(const Hit& hit, const glm::dvec3& direction,
@@ -213,53 +256,6 @@ std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const FrameConte
   known->Add(hit, direction);
   return static_cast<std::size_t>(known - airs.begin());
 }
-
-namespace {
-
-/// Returns the light of the air that arrives through media.
-AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& air,
-                         const AirAlongRay& whole) {
-  AirAlongRay left = whole;
-  left.inscatter = DimmedByMedia(
-      pieces, [&](double m) { return air(m).inscatter; }, whole.inscatter, Behind::kAll);
-  if (!whole.polarised) return left;
-  // Q and U can fall with distance, but the light behind an analyser, I + Q and I + U, increases.
-  const auto dimmed = [&](BandLight PolarisedLight::*part) {
-    const auto passed = [&](const AirAlongRay& lit) {
-      return lit.inscatter + *lit.polarised.*part;
-    };
-    return DimmedByMedia(
-               pieces, [&](double m) { return passed(air(m)); }, passed(whole), Behind::kAll) +
-           -1.0F * left.inscatter;
-  };
-  left.polarised = {dimmed(&PolarisedLight::q), dimmed(&PolarisedLight::u)};
-  return left;
-}
-
-/// Adds the light of one source in air and media. The first source also determines the
-/// transmittance and the pieces of media.
-void AddSource(const FrameContext& frame, const FrameLight& source, bool is_first,
-               const AirRay& through, SharedSegmentAir& rays) {
-  const AirTo air(frame, source, rays.kind, through);
-  AirAlongRay lit = air(std::numeric_limits<double>::infinity());
-  if (is_first) rays.media = BandLight(lit.inscatter.count);
-  if (source.media) {
-    MarchedLight marched = source.media->Along(frame.camera().eye(), through.direction,
-                                               through.length_m, air.sunlit());
-    lit = ThroughMedia(marched.pieces, air, lit);
-    lit.transmittance = lit.transmittance * marched.transmittance;
-    rays.media = rays.media + marched.radiance;
-    if (is_first) rays.pieces = std::move(marched.pieces);
-  }
-  if (is_first) {
-    rays.air = std::move(lit);
-    return;
-  }
-  rays.air.inscatter = rays.air.inscatter + source.by_sun * lit.inscatter;
-  if (lit.polarised) rays.air.polarised = *rays.air.polarised + source.by_sun * *lit.polarised;
-}
-
-}  // namespace
 
 void AddAir(const FrameContext& frame, SharedSegmentAir& rays) {
   const AirRay through = AirRayOf(frame, rays);
