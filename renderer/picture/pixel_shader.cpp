@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/lit_ground/ground_light.h"
 #include "renderer/picture/disk_radiance.h"
-#include "renderer/picture/ground_light.h"
 #include "renderer/picture/refracted_view_rays.h"
 
 namespace alpenglow::renderer {

@@ -6,7 +6,7 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/picture/lit_ground.h"
+#include "renderer/lit_ground/lit_ground.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
 
 namespace alpenglow::renderer {

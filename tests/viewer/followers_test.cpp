@@ -24,7 +24,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/picture/ground_follower.h"
+#include "renderer/lit_ground/ground_follower.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "tests/lut/camera_tables/air_reference.h"
 #include "tests/viewer/shaders/headless.h"

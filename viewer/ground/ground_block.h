@@ -26,7 +26,7 @@
 #include "renderer/illumination/gloss_mirror.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/sky_irradiance_gradient.h"
-#include "renderer/picture/ground_follower.h"
+#include "renderer/lit_ground/ground_follower.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/colour_drape.h"
 #include "renderer/surface/ground_pattern.h"

@@ -10,7 +10,7 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "renderer/illumination/sky_irradiance_gradient.h"
-#include "renderer/picture/ground_follower.h"
+#include "renderer/lit_ground/ground_follower.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"

@@ -13,7 +13,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/picture/ground_light.h"
+#include "renderer/lit_ground/ground_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/lamp_site.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the ground sends to the eye on the graphics card, against the renderer's.
-#include "renderer/picture/ground_light.h"
+#include "renderer/lit_ground/ground_light.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include "tests/fixtures/class_map.h"
 #include "tests/fixtures/quantile.h"
 #include "tests/fixtures/sanitized.h"
-#include "tests/renderer/picture/rough_site.h"
+#include "tests/renderer/lit_ground/rough_site.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"

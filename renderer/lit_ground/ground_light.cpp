@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/ground_light.h"
+#include "renderer/lit_ground/ground_light.h"
 
 #include <algorithm>
 #include <cmath>

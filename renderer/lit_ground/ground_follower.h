@@ -14,7 +14,7 @@
 #include "renderer/illumination/gloss_mirror.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/sky_irradiance_gradient.h"
-#include "renderer/picture/lit_ground.h"
+#include "renderer/lit_ground/lit_ground.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/colour_drape.h"
 #include "renderer/terrain/land_chunk.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/ground_follower.h"
+#include "renderer/lit_ground/ground_follower.h"
 
 #include <algorithm>
 #include <cmath>

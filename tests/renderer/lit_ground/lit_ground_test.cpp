@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light on the land as vertices have it and triangles interpolate it, against rays and against the
 // light of every place of its own.
-#include "renderer/picture/lit_ground.h"
+#include "renderer/lit_ground/lit_ground.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/numerics.h"
 #include "renderer/illumination/sky_irradiance_gradient.h"
-#include "tests/renderer/picture/rough_site.h"
+#include "tests/renderer/lit_ground/rough_site.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/lit_ground.h"
+#include "renderer/lit_ground/lit_ground.h"
 
 #include <tbb/task_arena.h>
 

@@ -27,7 +27,7 @@
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/layer.h"
-#include "renderer/picture/ground_light.h"
+#include "renderer/lit_ground/ground_light.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"

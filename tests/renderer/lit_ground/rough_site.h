@@ -7,7 +7,7 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/picture/lit_ground.h"
+#include "renderer/lit_ground/lit_ground.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/small_light.h"
 
