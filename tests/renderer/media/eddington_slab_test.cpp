@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <random>
+#include <vector>
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase.h"
@@ -18,16 +18,6 @@
 
 namespace alpenglow::renderer {
 namespace {
-
-/// Returns random numbers that are evenly distributed in [0, 1).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double operator()() { return static_cast<double>(engine_() >> 11U) * 0x1.0p-53; }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 struct Slab {
   double depth, albedo, ground, mu0;
@@ -41,85 +31,57 @@ glm::dvec3 Turned(const glm::dvec3& axis, double cosine, double angle) {
   return cosine * axis + sine * (std::cos(angle) * side + std::sin(angle) * glm::cross(axis, side));
 }
 
-/// Diffuse light that leaves upwards at the top and downwards at the bottom, for a beam of
-/// irradiance 1 on a horizontal plane. Photons are traced one by one; z is depth, downwards.
-struct Fluxes {
+glm::dvec3 BeamOf(const Slab& slab) {
+  return {std::sqrt(1.0 - slab.mu0 * slab.mu0), 0.0, slab.mu0};
+}
+
+/// Light that leaves a slab. The fluxes at the top and the bottom are for a beam of irradiance 1 on
+/// a horizontal plane and do not include the beam. The radiances, one for each look, are for a beam
+/// of irradiance 1 across it and do not include what the ground sends to the viewer directly.
+struct TracedLight {
   double up = 0.0, down = 0.0;
+  std::vector<double> radiance;
 };
-Fluxes TracedFluxes(const Slab& slab, int photons) {
-  Random random(17);
-  Fluxes fluxes;
+
+/// Traces photons one by one; z is depth, downwards. Every scattering adds the light that it sends
+/// towards viewers outside, at the top looking down or at the bottom looking up.
+TracedLight Traced(const Slab& slab, int photons, const std::vector<glm::dvec3>& looks = {}) {
+  std::mt19937_64 engine(17);
+  const auto random = [&] { return static_cast<double>(engine() >> 11U) * 0x1.0p-53; };
+  TracedLight light{.radiance = std::vector<double>(looks.size(), 0.0)};
   for (int i = 0; i < photons; ++i) {
-    double z = 0.0, weight = 1.0;
-    glm::dvec3 way(std::sqrt(1.0 - slab.mu0 * slab.mu0), 0.0, slab.mu0);
-    bool is_beam = true;
-    for (;;) {
+    double z = 0.0, weight = 1.0 / photons;
+    const auto survives = [&](double chance) {
+      weight /= chance;
+      return random() < chance;
+    };
+    glm::dvec3 way = BeamOf(slab);
+    for (bool is_beam = true;; is_beam = false) {
       z -= std::log(1.0 - random()) * way.z;
       if (z <= 0.0) {
-        fluxes.up += weight;
+        light.up += weight;
         break;
       }
       if (z >= slab.depth) {
-        if (!is_beam) fluxes.down += weight;
+        if (!is_beam) light.down += weight;
         weight *= slab.ground;
-        if (random() >= weight) break;
-        weight = 1.0;
+        if (!survives(slab.ground)) break;
         z = slab.depth;
         way = Turned({0.0, 0.0, -1.0}, std::sqrt(random()), 2.0 * kPi * random());
-      } else {
-        weight *= slab.albedo;
-        if (weight < 0.1) {
-          if (random() >= weight) break;
-          weight = 1.0;
-        }
-        way = Turned(way, SampleCosine(slab.phase, random()), 2.0 * kPi * random());
+        continue;
       }
-      is_beam = false;
+      weight *= slab.albedo;
+      for (std::size_t k = 0; k < looks.size(); ++k) {
+        const double steep = std::abs(looks[k].z);
+        const double left = std::exp(-(looks[k].z > 0.0 ? z : slab.depth - z) / steep);
+        light.radiance[k] +=
+            slab.mu0 * weight * Phase(slab.phase, -glm::dot(way, looks[k])) * left / steep;
+      }
+      if (weight * photons < 0.1 && !survives(weight * photons)) break;
+      way = Turned(way, SampleCosine(slab.phase, random()), 2.0 * kPi * random());
     }
   }
-  return {fluxes.up / photons, fluxes.down / photons};
-}
-
-/// Returns the radiance towards a viewer outside, at the top looking down or at the bottom looking
-/// up, per unit irradiance across the beam, without the ground and the beam themselves. Backward
-/// paths add the beam at every scattering.
-double TracedRadiance(const Slab& slab, const glm::dvec3& look, int paths) {
-  Random random(29);
-  const glm::dvec3 beam(std::sqrt(1.0 - slab.mu0 * slab.mu0), 0.0, slab.mu0);
-  double sum = 0.0;
-  for (int i = 0; i < paths; ++i) {
-    double z = look.z > 0.0 ? 0.0 : slab.depth, weight = 1.0;
-    glm::dvec3 way = look;
-    for (int order = 0;; ++order) {
-      // The first flight is sampled within the layer, so that every path contributes.
-      const double to_edge = way.z > 0.0 ? (slab.depth - z) / way.z : -z / way.z;
-      if (order == 0) {
-        const double inside = -std::expm1(-to_edge);
-        weight *= inside;
-        z -= std::log(1.0 - random() * inside) * way.z;
-      } else {
-        z -= std::log(1.0 - random()) * way.z;
-      }
-      if (z <= 0.0) break;
-      glm::dvec3 next;
-      if (z >= slab.depth) {
-        weight *= slab.ground;
-        z = slab.depth;
-        sum += weight / kPi * slab.mu0 * std::exp(-z / slab.mu0);
-        next = Turned({0.0, 0.0, -1.0}, std::sqrt(random()), 2.0 * kPi * random());
-      } else {
-        weight *= slab.albedo;
-        sum += weight * Phase(slab.phase, -glm::dot(way, beam)) * std::exp(-z / slab.mu0);
-        next = Turned(way, SampleCosine(slab.phase, random()), 2.0 * kPi * random());
-      }
-      if (weight < 0.05 || order > 200) {
-        if (random() >= 0.5) break;
-        weight *= 2.0;
-      }
-      way = next;
-    }
-  }
-  return sum / paths;
+  return light;
 }
 
 /// Returns the same radiance from sources along the ray, which is fast.
@@ -127,8 +89,7 @@ double FastRadiance(const Slab& slab, const glm::dvec3& look) {
   const auto chi = LegendreCoefficients(slab.phase, 2);
   const EddingtonSlab eddington({slab.albedo, chi[1], chi[2]}, slab.depth, slab.ground, slab.mu0);
   const PhaseFunction blurred = tests::LobeOf(chi[1]);
-  const glm::dvec3 beam(std::sqrt(1.0 - slab.mu0 * slab.mu0), 0.0, slab.mu0);
-  const double cosine = -glm::dot(look, beam);
+  const double cosine = -glm::dot(look, BeamOf(slab));
   constexpr int kSteps = 1000;
   const double length = slab.depth / std::abs(look.z);
   double sum = 0.0;
@@ -172,7 +133,7 @@ double WorstFlux(double mu0) {
   for (const double depth : {0.3, 1.0, 4.0, 16.0}) {
     for (const double albedo : {0.9, 1.0}) {
       const Slab slab{depth, albedo, 0.2, mu0, DropletPhase(12.0)};
-      const Fluxes traced = TracedFluxes(slab, 10000);
+      const TracedLight traced = Traced(slab, 10000);
       const auto chi = LegendreCoefficients(slab.phase, 2);
       const EddingtonSlab fast({albedo, chi[1], chi[2]}, depth, 0.2, mu0);
       const double up = fast.At(0.0).UpwardFlux() / mu0;
@@ -211,7 +172,7 @@ TEST(EddingtonSlab, FluxesOfLobesBackwardsAreThoseOfTracedPhotons) {
   for (const double g : {-0.5, -0.8}) {
     for (const double depth : {0.3, 1.0, 4.0}) {
       const Slab slab{depth, 1.0, 0.2, 0.6, tests::LobeOf(g)};
-      const Fluxes traced = TracedFluxes(slab, 10000);
+      const TracedLight traced = Traced(slab, 10000);
       const EddingtonSlab fast({1.0, g, g * g}, depth, 0.2, slab.mu0);
       EXPECT_NEAR(fast.At(0.0).UpwardFlux() / slab.mu0, traced.up, 0.1) << g << " " << depth;
       EXPECT_NEAR(fast.At(depth).DownwardFlux() / slab.mu0, traced.down, 0.1) << g << " " << depth;
@@ -225,16 +186,20 @@ TEST(EddingtonSlab, RadiancesAreThoseOfTracedPaths) {
   for (const double depth : {0.5, 2.0, 8.0}) {
     for (const double mu0 : {0.15, 0.6}) {
       const Slab slab{depth, 1.0, 0.2, mu0, tests::LobeOf(0.8)};
+      std::vector<glm::dvec3> looks;
       for (const double z : {0.9, 0.2, -0.2, -0.9}) {
         for (const double azimuth : {0.3, 1.6, 3.0}) {
           const double sine = std::sqrt(1.0 - z * z);
-          const glm::dvec3 look(sine * std::cos(azimuth), sine * std::sin(azimuth), z);
-          const double ratio = FastRadiance(slab, look) / TracedRadiance(slab, look, 4000);
-          squares += (ratio - 1.0) * (ratio - 1.0);
-          least = std::min(least, ratio);
-          most = std::max(most, ratio);
-          ++count;
+          looks.emplace_back(sine * std::cos(azimuth), sine * std::sin(azimuth), z);
         }
+      }
+      const TracedLight traced = Traced(slab, 10000, looks);
+      for (std::size_t k = 0; k < looks.size(); ++k) {
+        const double ratio = FastRadiance(slab, looks[k]) / traced.radiance[k];
+        squares += (ratio - 1.0) * (ratio - 1.0);
+        least = std::min(least, ratio);
+        most = std::max(most, ratio);
+        ++count;
       }
     }
   }
