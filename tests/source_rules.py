@@ -17,8 +17,8 @@
   public ones. A program (a source with main) has none.
 - Every path of a file named in a source or a build file exists: in the tree, or from the end of a path ("mesh.h").
   A * stands for several names. documents.py checks the Markdown files.
-- Every function of a text of SharedTexts (viewer/gl/shader.cpp) has a case in tests/fixtures/shared_text_cases.cpp, or
-  a function that calls it has one.
+- Every function of a text of SharedTexts (viewer/gl/shader.cpp) has a case in tests/fixtures/shared_text_cases.cpp,
+  which also takes the formulas of atmosphere/medium/phase_forms.cpp, or a function that calls it has one.
 - Programs write to standard output and error only through lut/cli/messages.h: fmt::print throws
   where standard error takes nothing, which would end the work.
 - Nothing reads or writes numbers, or changes the case of letters, by the locale of the host program: it may write
@@ -52,7 +52,7 @@ ANY_NAME = re.compile(r"(?:NAME|name|[a-z](?:\.[A-Z])?)(?:_[a-z]+)?\.[a-z]+")
 FOREIGN_FILES = {"erfa.h", "ImfEnvmap.h", "locale/localeinfo.h", "summary.md", "broken.glsl",
                  "ground.frag.glsl"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:alpenglow/)?([^">]+)[">]')
-CASE = re.compile(r"ALPENGLOW_SHARED_CASE\((.*?)grid::", re.DOTALL)
+CASE = re.compile(r"ALPENGLOW_(?:SHARED_CASE\((.*?)grid::|PHASE_VALUE\((.*?)\),$)", re.DOTALL | re.MULTILINE)
 NAMESPACE = re.compile(r"^namespace alpenglow::(\w+)", re.MULTILINE)
 
 
@@ -170,7 +170,7 @@ def functions_without_case(shared, cases):
             name, _, rest = function.partition("(")
             called_by[name] = set(re.findall(r"\b(\w+)\(", rest))
     reached = set()
-    new = {name for case in CASE.findall(cases) for name in re.findall(r"\b(\w+)\(", case)}
+    new = {name for case in CASE.findall(cases) for name in re.findall(r"\b(\w+)\(", "".join(case))}
     while new:
         reached |= new
         new = {name for caller in new for name in called_by.get(caller, ())} - reached
@@ -232,6 +232,7 @@ def check_examples():
     shared = "SHARED Number A(Number x) {\n  return B(x);  // C(x)\n}\nSHARED Number B(Number x) { return x; }\n"
     assert functions_without_case([shared, "SHARED Number C(Number x) { return x; }\n"],
                                   "ALPENGLOW_SHARED_CASE(A(a[0]), grid::Rays())\nC(1.0)\n") == ["C"]
+    assert not functions_without_case([shared], "     ALPENGLOW_PHASE_VALUE(A(c, p.x)),\n     .mean = nullptr},\n")
     assert folders_of("| `air/` | media |\n| `ray.h` | no folder |\n") == ["air"]
 
 
@@ -269,7 +270,8 @@ def broken_rules():
     for file in sorted((TREE / "include").rglob("*.h")):
         yield from foreign_includes(str(file.relative_to(TREE)), file.read_text(encoding="utf-8"))
     shared = re.findall(r'"([\w/]+\.glsl)"', (TREE / "viewer/gl/shader.cpp").read_text(encoding="utf-8"))
-    cases = (TREE / "tests/fixtures/shared_text_cases.cpp").read_text(encoding="utf-8")
+    cases = "".join((TREE / path).read_text(encoding="utf-8")
+                    for path in ("tests/fixtures/shared_text_cases.cpp", "atmosphere/medium/phase_forms.cpp"))
     assert len(shared) > 10, "the rule must have looked at the shared texts"
     for name in functions_without_case([(TREE / path).read_text(encoding="utf-8") for path in shared], cases):
         yield f"tests/fixtures/shared_text_cases.cpp: {name} of a shared text has no case"

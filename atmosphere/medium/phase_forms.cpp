@@ -162,34 +162,43 @@ constexpr std::array kDraineLobe{kG, kAlpha};
 constexpr std::array kAllParameters{kG, kGBack, kBackWeight, kAlpha};
 
 using Function = PhaseFunction;
-using Coefficients = std::vector<double>;
+
+// The macro uses the formula of a value three times: as C++ for double and float, and as text for
+// GLSL.
+#define ALPENGLOW_PHASE_VALUE(formula)                            \
+  .value = [](const Function& phase, double c) -> double {        \
+    using namespace shared;                                       \
+    [[maybe_unused]] const glm::dvec4 p = PhaseVectorOf(phase);   \
+    return formula;                                               \
+  },                                                              \
+  .value_in_float = [](const Function& phase, float c) -> float { \
+    using namespace shared;                                       \
+    [[maybe_unused]] const glm::vec4 p(PhaseVectorOf(phase));     \
+    return formula;                                               \
+  },                                                              \
+  .expression = #formula
 
 constexpr PhaseForm kForms[] = {
     {.kind = PhaseKind::kRayleigh,
      .name = "rayleigh",
      .parameters = {},
-     .value = [](const Function&, double c) { return shared::PhaseRayleigh(c); },
+     ALPENGLOW_PHASE_VALUE(PhaseRayleigh(c)),
      .mean_cosine = [](const Function&) { return 0.0; },
      .sample = [](const Function&, double u) { return SampleRayleigh(u); },
-     .legendre = nullptr,
-     .expression = "PhaseRayleigh(c)"},
+     .legendre = nullptr},
 
     {.kind = PhaseKind::kHenyeyGreenstein,
      .name = "henyey-greenstein",
      .parameters = kOneLobe,
-     .value = [](const Function& p, double c) { return shared::PhaseHenyeyGreenstein(c, p.g); },
+     ALPENGLOW_PHASE_VALUE(PhaseHenyeyGreenstein(c, p.x)),
      .mean_cosine = [](const Function& p) { return p.g; },
      .sample = [](const Function& p, double u) { return SampleHenyeyGreenstein(u, p.g); },
-     .legendre = [](const Function& p, int degree) { return CoefficientsOfLobe(p.g, degree); },
-     .expression = "PhaseHenyeyGreenstein(c, p.x)"},
+     .legendre = [](const Function& p, int degree) { return CoefficientsOfLobe(p.g, degree); }},
 
     {.kind = PhaseKind::kDoubleHenyeyGreenstein,
      .name = "double-henyey-greenstein",
      .parameters = kTwoLobes,
-     .value =
-         [](const Function& p, double c) {
-           return shared::PhaseDoubleHenyeyGreenstein(c, p.g, p.g_back, p.back_weight);
-         },
+     ALPENGLOW_PHASE_VALUE(PhaseDoubleHenyeyGreenstein(c, p.x, p.y, p.z)),
      .mean_cosine =
          [](const Function& p) { return (1.0 - p.back_weight) * p.g + p.back_weight * p.g_back; },
      .sample =
@@ -202,23 +211,21 @@ constexpr PhaseForm kForms[] = {
          [](const Function& p, int degree) {
            return MixedCoefficients(CoefficientsOfLobe(p.g, degree),
                                     CoefficientsOfLobe(p.g_back, degree), p.back_weight);
-         },
-     .expression = "PhaseDoubleHenyeyGreenstein(c, p.x, p.y, p.z)"},
+         }},
 
     {.kind = PhaseKind::kCornetteShanks,
      .name = "cornette-shanks",
      .parameters = kOneLobe,
-     .value = [](const Function& p, double c) { return shared::PhaseCornetteShanks(c, p.g); },
+     ALPENGLOW_PHASE_VALUE(PhaseCornetteShanks(c, p.x)),
      .mean_cosine = [](const Function& p) { return MeanCosineOfDraine(p.g, 1.0); },
      .sample = [](const Function& p, double u) { return SampleDraine(u, p.g, 1.0); },
      .legendre = [](const Function& p,
-                    int degree) { return CoefficientsOfDraine(p.g, 1.0, degree); },
-     .expression = "PhaseCornetteShanks(c, p.x)"},
+                    int degree) { return CoefficientsOfDraine(p.g, 1.0, degree); }},
 
     {.kind = PhaseKind::kSchlick,
      .name = "schlick",
      .parameters = kOneLobeOfSchlick,
-     .value = [](const Function& p, double c) { return shared::PhaseSchlick(c, p.g); },
+     ALPENGLOW_PHASE_VALUE(PhaseSchlick(c, p.x)),
      .mean_cosine = [](const Function& p) { return MeanCosineOfSchlick(SchlickK(p.g)); },
      .sample =
          [](const Function& p, double u) {
@@ -226,26 +233,21 @@ constexpr PhaseForm kForms[] = {
            const double k = SchlickK(p.g);
            return (s + k) / (1.0 + k * s);
          },
-     .legendre = nullptr,
-     .expression = "PhaseSchlick(c, p.x)"},
+     .legendre = nullptr},
 
     {.kind = PhaseKind::kDraine,
      .name = "draine",
      .parameters = kDraineLobe,
-     .value = [](const Function& p, double c) { return shared::PhaseDraine(c, p.g, p.alpha); },
+     ALPENGLOW_PHASE_VALUE(PhaseDraine(c, p.x, p.w)),
      .mean_cosine = [](const Function& p) { return MeanCosineOfDraine(p.g, p.alpha); },
      .sample = [](const Function& p, double u) { return SampleDraine(u, p.g, p.alpha); },
      .legendre = [](const Function& p,
-                    int degree) { return CoefficientsOfDraine(p.g, p.alpha, degree); },
-     .expression = "PhaseDraine(c, p.x, p.w)"},
+                    int degree) { return CoefficientsOfDraine(p.g, p.alpha, degree); }},
 
     {.kind = PhaseKind::kHenyeyGreensteinDraine,
      .name = "henyey-greenstein-draine",
      .parameters = kAllParameters,
-     .value =
-         [](const Function& p, double c) {
-           return shared::PhaseHenyeyGreensteinDraine(c, p.g, p.g_back, p.back_weight, p.alpha);
-         },
+     ALPENGLOW_PHASE_VALUE(PhaseHenyeyGreensteinDraine(c, p.x, p.y, p.z, p.w)),
      .mean_cosine =
          [](const Function& p) {
            return (1.0 - p.back_weight) * p.g +
@@ -261,17 +263,20 @@ constexpr PhaseForm kForms[] = {
          [](const Function& p, int degree) {
            return MixedCoefficients(CoefficientsOfLobe(p.g, degree),
                                     CoefficientsOfDraine(p.g_back, p.alpha, degree), p.back_weight);
-         },
-     .expression = "PhaseHenyeyGreensteinDraine(c, p.x, p.y, p.z, p.w)"},
+         }},
 
     {.kind = PhaseKind::kTable,
      .name = "table",
      .parameters = {},
      .value = [](const Function& p, double c) { return p.table->At(PhaseTable::Position(c)); },
+     .value_in_float =
+         [](const Function& p, float c) {
+           return static_cast<float>(p.table->At(PhaseTable::Position(static_cast<double>(c))));
+         },
+     .expression = "0.0",
      .mean_cosine = [](const Function& p) { return p.table->mean_cosine(); },
      .sample = [](const Function& p, double u) { return p.table->Quantile(u); },
-     .legendre = nullptr,
-     .expression = "0.0"},
+     .legendre = nullptr},
 };
 
 constexpr bool IsInOrderOfKinds() {

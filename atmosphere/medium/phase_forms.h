@@ -4,6 +4,7 @@
 // The formulas of the values are in phase.glsl.
 #pragma once
 
+#include <glm/vec4.hpp>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -25,8 +26,13 @@ struct PhaseForm {
   PhaseKind kind;
   const char* name;  // in atmosphere.toml
   std::span<const PhaseParameter> parameters;
-  /// Returns the value [1/sr].
+  /// Return the value [1/sr], in double precision and as shaders compute it.
   double (*value)(const PhaseFunction& phase, double cos_scattering);
+  float (*value_in_float)(const PhaseFunction& phase, float cos_scattering);
+  /// The value in shared texts of the cosine `c` and the vector `p` of g, g_back, back_weight and
+  /// alpha (PhaseVectorOf). A shader that has one formula is faster than one that chooses at run
+  /// time.
+  const char* expression;
   double (*mean_cosine)(const PhaseFunction& phase);
   /// Returns a cosine with the density 2 pi value(); rounding may leave [-1, 1].
   /// @param u  uniform in [0, 1).
@@ -34,9 +40,6 @@ struct PhaseForm {
   /// Returns chi_0 to chi_degree, where value() is the sum of (2 l + 1) / (4 pi) chi_l P_l. Null:
   /// there is no closed form, and the coefficients are integrals.
   std::vector<double> (*legendre)(const PhaseFunction& phase, int degree);
-  /// The value in shared texts of the cosine `c` and the vector `p` of g, g_back, back_weight and
-  /// alpha. A shader that has one formula is faster than one that chooses at run time.
-  const char* expression;
 };
 
 /// Returns all rows, in the order of PhaseKind.
@@ -45,6 +48,10 @@ struct PhaseForm {
 
 /// Returns every parameter that some phase function has, with its widest range.
 [[nodiscard]] std::span<const PhaseParameter> PhaseParameters();
+/// Returns the vector `p` of PhaseForm::expression: these parameters in their order.
+[[nodiscard]] inline glm::dvec4 PhaseVectorOf(const PhaseFunction& phase) {
+  return {phase.g, phase.g_back, phase.back_weight, phase.alpha};
+}
 /// Returns the parameter of a phase function with this key, if it has one.
 [[nodiscard]] std::optional<PhaseParameter> ParameterOf(const PhaseForm& form,
                                                         std::string_view key);

@@ -9,6 +9,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {
@@ -107,9 +108,7 @@ void PutColours(const BandColour& colour, LampsBlock& block) {
 
 }  // namespace
 
-glm::vec4 ParametersOf(const PhaseFunction& phase) {
-  return {phase.g, phase.g_back, phase.back_weight, phase.alpha};
-}
+glm::vec4 ParametersOf(const PhaseFunction& phase) { return glm::vec4(PhaseVectorOf(phase)); }
 
 LampView LampViewFrom(const LocalFrame& ground, const Place& eye, double pixel_angle_rad) {
   return {{ground, LocalFrame(ground.ellipsoid(), eye)}, eye.height_m, pixel_angle_rad};
