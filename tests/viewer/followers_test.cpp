@@ -480,7 +480,7 @@ TEST_F(ShadeFollowerTest, MapsFollowASunThatMovesFasterThanTheyAreMade) {
   glm::dvec3 last(0.0);
   while (maps < 4) {
     elevation += elevation < 40.0 ? 0.06 : -38.0;  // more than a fifth of the radius every frame
-    follower.Follow(Eye(0.0), SunAtDegrees(elevation), kShadeUnit);
+    follower.Follow(Eye(0.0), SunAtDegrees(elevation), 1.0, kShadeUnit);
     if (follower.shade().Shades() && follower.shade().map().to_light != last) {
       last = follower.shade().map().to_light;
       ++maps;
@@ -488,6 +488,24 @@ TEST_F(ShadeFollowerTest, MapsFollowASunThatMovesFasterThanTheyAreMade) {
     std::this_thread::yield();
   }
   SUCCEED() << "else it would not have come to an end";
+}
+
+TEST_F(ShadeFollowerTest, MapsOfALightThatBringsLittleMayBeOlder) {
+  constexpr double kRadius_deg = 0.267;
+  ShadeFollower follower(kWgs84);
+  follower.SetSize(kSmall);
+  follower.SetGround(Mountain(requested_));
+  follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
+  const glm::dvec3 first = follower.shade().map().to_light;
+  const auto map_after = [&](double share, double moved_radii) {
+    follower.Follow(Eye(0.0), SunAtDegrees(5.0 + moved_radii * kRadius_deg), share, kShadeUnit);
+    // Suits the first map, but no map that Follow has requested.
+    follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0 + 0.15 * kRadius_deg), kShadeUnit);
+    return follower.shade().map().to_light;
+  };
+  EXPECT_EQ(map_after(0.1, 1.9), first) << "two radii";
+  EXPECT_EQ(map_after(0.4, 0.45), first) << "0.2 radii over the share";
+  EXPECT_NE(map_after(0.4, 0.55), first);
 }
 
 }  // namespace

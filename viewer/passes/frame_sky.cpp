@@ -15,6 +15,10 @@ constexpr double kMoonDoesNotCount_rad = 1.0 * kRadiansPerDegree;
 // Below this elevation the sun lights no land, and land shades no air: from the highest summit the
 // horizon is 3.02 degrees down, and the sun's radius is 0.27 degrees.
 constexpr double kSetOnLand_rad = -3.5 * kRadiansPerDegree;
+// Largest share of a light in the light of a direction of the sky over its share on a level surface.
+// It is largest near the light and near the horizon below it: a sky that contributes a ten-thousandth
+// on a level surface contributes at most a 160th there.
+constexpr double kMostOverLevelShare = 60.0;
 
 std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
   const auto off = [](double nm) { return std::abs(nm - 555.0); };
@@ -46,9 +50,7 @@ DistantLight BesideMoon(const DistantLight& sun, const SkyBodies& bodies, const 
 // Returns the lights of a planet with a moon.
 LightsOfSky LightsOf(const SkyBodies& bodies, const SunInSky& sun, const MoonDisk& moon,
                      const AirOfSky& air, double altitude_m) {
-  // A sky that contributes a ten-thousandth on a level surface contributes a five-hundredth near
-  // the horizon below its light.
-  constexpr double kUnseenShare = 1e-4;
+  constexpr double kUnseenShare = 1e-4;  // in the sky at most kMostOverLevelShare times as much
   const Medium& medium = air.air->medium();
   const DistantLight whole_sun = SunlightOf(sun, medium);
   const DistantLight by_sun = BesideMoon(whole_sun, bodies, medium);
@@ -66,9 +68,13 @@ LightsOfSky LightsOf(const SkyBodies& bodies, const SunInSky& sun, const MoonDis
 
 }  // namespace
 
+double MostShareOfKeyLight(const FrameSky& sky) {
+  return std::min(kMostOverLevelShare * sky.key_share, 1.0);
+}
+
 FrameSky FrameSkyAt(const Place& eye, const UtcTime& now, const AirOfSky& air) {
   const SkyBodies bodies = SkyBodiesAt(eye, now);
-  FrameSky sky{bodies, bodies.ApparentSun(air.refracting), std::nullopt, false, {}, 0.0};
+  FrameSky sky{bodies, bodies.ApparentSun(air.refracting), std::nullopt, false, {}, 0.0, 1.0};
   const double altitude_m = std::max(eye.height_m, 0.0);
   if (air.air->medium().follows_wgs84) {
     sky.moon = bodies.ApparentMoonDisk(air.refracting);
@@ -80,6 +86,8 @@ FrameSky FrameSkyAt(const Place& eye, const UtcTime& now, const AirOfSky& air) {
   }
   for (const DistantLight& light : sky.lights)
     sky.level_lux += LevelIlluminance(light, air, altitude_m);
+  if (sky.lights.size() > 1)
+    sky.key_share = LevelIlluminance(sky.lights.front(), air, altitude_m) / sky.level_lux;
   return sky;
 }
 

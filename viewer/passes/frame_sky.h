@@ -66,7 +66,13 @@ struct FrameSky {
   bool is_eclipse;               // whether the moon covers part of the sun
   LightsOfSky lights;
   double level_lux;  // illuminance of level ground at the eye by the lights and their skies
+  double key_share;  // the part of it by the first light and its sky
 };
+
+/// Returns a bound of the share of the first light in the light of any direction of the sky (test:
+/// LightsOfSky.ShareOfTheKeyLightInTheSkyIsBounded). It is largest near the light and near the horizon
+/// below it.
+[[nodiscard]] double MostShareOfKeyLight(const FrameSky& sky);
 
 /// Computes the sky of an eye. A light is included if its contribution on a level surface at the
 /// eye, in the band nearest to 555 nm, exceeds a ten-thousandth of the other's. Planets other than

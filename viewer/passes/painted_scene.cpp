@@ -196,7 +196,8 @@ void PaintedScene::KeepUpMedia(const PaintedView& view, const LightsOfSky& light
   }
 }
 
-void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, double seconds) {
+void PaintedScene::Update(const PaintedView& view, const FrameSky& sky, double seconds) {
+  const LightsOfSky& lights = sky.lights;
   std::erase_if(leaving_, [](const auto& land) { return !land->IsWorking(); });
   KeepUpAir(view, lights, Pace::kFollow, seconds);
   land_->Update(view.eye.place, LandIn(view, air_.air()->medium()), seconds);
@@ -206,7 +207,8 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   if (ground_.Follow(air_.air(), GroundViewOf(view, lights), seconds)) UpdateLight();
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kFollow);
-  if (sizes_.has_shafts) shade_.Follow(view.eye.place, lights.front(), kShadeUnit);
+  if (sizes_.has_shafts)
+    shade_.Follow(view.eye.place, lights.front(), MostShareOfKeyLight(sky), kShadeUnit);
   KeepUpMedia(view, lights, Pace::kFollow);
 }
 

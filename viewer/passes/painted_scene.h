@@ -76,7 +76,7 @@ class PaintedScene {
   /// light of media in new air or under a moon.
   /// @param lights   as seen from the eye.
   /// @param seconds  time since the last call.
-  void Update(const PaintedView& view, const LightsOfSky& lights, double seconds);
+  void Update(const PaintedView& view, const FrameSky& sky, double seconds);
   /// Waits until everything that the view needs is complete.
   /// @param samples  number of rays per pixel to be drawn.
   void WaitUntilReady(const PaintedView& view, const LightsOfSky& lights, int samples);

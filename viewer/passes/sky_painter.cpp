@@ -77,7 +77,7 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
 void SkyPainter::Update(const PaintedView& view, double seconds) {
   Begin("update");
   const std::shared_ptr<const FrameSky> sky = SkyAt(view.eye.place, view.now);
-  scene_.Update(view, sky->lights, seconds);
+  scene_.Update(view, *sky, seconds);
   stars_.Follow(view, *sky, scene_.air().air());
   // After a jump in time into the night, wait for the first map.
   if (HasNightSkyMap()) night_sky_map_.Follow(view, scene_.air().air(), !night_sky_map_.HasAny());

@@ -19,16 +19,34 @@ namespace {
 
 glm::vec4 FirstFour(const StarBell& bell) { return {bell[0], bell[1], bell[2], bell[3]}; }
 
-/// Returns the direction with the same azimuth at another elevation.
-/// @param direction  not vertical.
-glm::dvec3 AtElevation(const glm::dvec3& direction, double elevation_rad) {
-  const double level =
-      std::cos(elevation_rad) / std::sqrt(direction.x * direction.x + direction.y * direction.y);
-  return {level * direction.x, level * direction.y, std::sin(elevation_rad)};
+// Returns the direction with the same azimuth that is raised by an angle.
+glm::dvec3 Raised(const glm::dvec3& direction, double lift_rad) {
+  const double sine = direction.z, cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
+  if (cosine == 0.0) return direction;  // nothing is raised in the zenith
+  const double turn_sine = std::sin(lift_rad), turn_cosine = std::cos(lift_rad);
+  const double level = turn_cosine - turn_sine * sine / cosine;
+  return {level * direction.x, level * direction.y, sine * turn_cosine + cosine * turn_sine};
 }
 
-double Elevation(const glm::dvec3& direction) {
-  return std::asin(std::clamp(direction.z, -1.0, 1.0));
+// Returns the angle by which one direction is higher than another.
+double RiseFrom(const glm::dvec3& before, const glm::dvec3& now) {
+  const auto cosine = [](double sine) { return std::sqrt(std::max(1.0 - sine * sine, 0.0)); };
+  return std::asin(now.z * cosine(before.z) - before.z * cosine(now.z));
+}
+
+// The parabola goes through the refraction of the star's elevation and those 0.1 degrees above and
+// below.
+RefractedStar Refracted(const glm::dvec3& seen, const RefractedView& bent) {
+  constexpr double kStep_rad = 0.1 * kRadiansPerDegree;
+  const double elevation_rad = std::asin(std::clamp(seen.z, -1.0, 1.0));
+  const auto lift = [&](double at_rad) { return at_rad - bent.TrueElevation(at_rad); };
+  const double here = lift(elevation_rad);
+  const double below = lift(elevation_rad - kStep_rad), above = lift(elevation_rad + kStep_rad);
+  // Changes of the true elevation to the other two.
+  const double fall = kStep_rad + below - here, rise = kStep_rad - above + here;
+  const double slope_below = (here - below) / fall, slope_above = (above - here) / rise;
+  const double curvature = (slope_above - slope_below) / (fall + rise);
+  return {Raised(seen, -here), here, slope_below + curvature * fall, curvature};
 }
 
 /// The place of a star in a picture.
@@ -114,11 +132,17 @@ StarPoint PointOf(const StarLight& light, const glm::dvec3& towards, const StarP
 
 }  // namespace
 
-StarList::StarList(std::vector<StarLight> lights) : lights_(std::move(lights)) {
+StarList::StarList(std::vector<StarLight> lights, const RefractedView* bent)
+    : lights_(std::move(lights)) {
   std::stable_sort(lights_.begin(), lights_.end(),
                    [](const StarLight& a, const StarLight& b) { return a.lux > b.lux; });
   directions_.reserve(lights_.size());
-  for (const StarLight& light : lights_) directions_.emplace_back(light.direction);
+  refracted_.reserve(lights_.size());
+  for (const StarLight& light : lights_) {
+    directions_.push_back(light.direction);
+    refracted_.push_back(bent == nullptr ? RefractedStar{light.direction, 0.0, 0.0, 0.0}
+                                         : Refracted(light.direction, *bent));
+  }
 }
 
 std::size_t StarList::CountDownTo(double faintest_lux) const {
@@ -128,18 +152,11 @@ std::size_t StarList::CountDownTo(double faintest_lux) const {
   return static_cast<std::size_t>(end - lights_.begin());
 }
 
-glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky) {
-  constexpr double kHigh_sine = 0.35;  // above it refraction changes by 2" in half a minute
-  const glm::dvec3& before = light.direction;
-  if (sky.bent == nullptr || std::abs(before.z) > kHigh_sine) return sky.turn * before;
-  const double seen_before = Elevation(before), true_before = sky.bent->TrueElevation(seen_before);
-  const glm::dvec3 truly = sky.turn * AtElevation(before, true_before);
-  const double true_now = Elevation(truly), risen = true_now - true_before;
-  // One step of the secant method from the elevation without a change of refraction. In the time
-  // that a list is used, a star rises by 0.1 degrees, and the step leaves an error of less than 1".
-  const double guess = seen_before + risen, true_of_guess = sky.bent->TrueElevation(guess);
-  const double slope = risen == 0.0 ? 1.0 : (true_of_guess - true_before) / risen;
-  return AtElevation(truly, guess - (true_of_guess - true_now) / slope);
+glm::dvec3 StarList::Towards(std::size_t star, const glm::dmat3& turn) const {
+  const RefractedStar& before = refracted_[star];
+  const glm::dvec3 truly = turn * before.truly;
+  const double rise = RiseFrom(before.truly, truly);
+  return Raised(truly, before.lift_rad + rise * (before.per_rise + rise * before.per_rise_squared));
 }
 
 std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sky) {
@@ -156,7 +173,7 @@ std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sk
     if (glm::dot(before, forward_then) < least_cosine) continue;
     if (!plane.PlaceOf(sky.turn * before, reach)) continue;
     const StarLight& light = sky.stars.lights()[i];
-    const glm::dvec3 towards = TowardsStar(light, sky);
+    const glm::dvec3 towards = sky.stars.Towards(i, sky.turn);
     const auto at = plane.PlaceOf(towards, kStarReach);
     if (!at || glm::length(towards - sky.to_moon) < sky.moon_radius_rad) continue;
     points.push_back(PointOf(light, towards, *at, plane));
@@ -195,8 +212,9 @@ StarPainter::StarPainter()
           [](const Request& request) {
             constexpr double kAll = std::numeric_limits<double>::infinity();
             const RefractedView bent(request.air->medium(), request.place.height_m);
-            return Made{request, bent,
-                        StarLightsOver(request.place, request.now, bent, *request.colour, kAll)};
+            return Made{
+                request,
+                {StarLightsOver(request.place, request.now, bent, *request.colour, kAll), &bent}};
           },
           Suits) {}
 
@@ -249,6 +267,8 @@ void StarPainter::Connect(const SceneMedia& media) {
   media.Connect(*program_);
 }
 
+// A star is one point of 5 x 5 pixels. The viewport is larger than the picture by the reach of stars,
+// since OpenGL omits points whose centres are outside.
 void StarPainter::Draw(const std::vector<StarPoint>& points, const PaintedView& view,
                        Land land) const {
   glBindVertexArray(vertices_.id());
@@ -259,16 +279,20 @@ void StarPainter::Draw(const std::vector<StarPoint>& points, const PaintedView& 
     glEnableVertexAttribArray(attribute.location);
     glVertexAttribPointer(attribute.location, 4, GL_FLOAT, GL_FALSE, sizeof(StarPoint),
                           reinterpret_cast<const void*>(attribute.location * sizeof(glm::vec4)));
-    glVertexAttribDivisor(attribute.location, 1);
   }
   program_->Use();
-  glUniform2f(program_->Uniform("picture_size"), static_cast<float>(view.width),
-              static_cast<float>(view.height));
+  constexpr int kMargin = kStarReach + 1;
+  const int width = view.width + 2 * kMargin, height = view.height + 2 * kMargin;
+  glUniform3f(program_->Uniform("viewport"), static_cast<float>(width), static_cast<float>(height),
+              static_cast<float>(kMargin));
   glUniform1i(program_->Uniform("surface_hides"), land == Land::kBySurface ? 1 : 0);
   glDepthFunc(GL_EQUAL);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(points.size()));
+  glPointSize(static_cast<float>(2 * kStarReach + 1));
+  glViewport(-kMargin, -kMargin, width, height);
+  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(points.size()));
+  glViewport(0, 0, view.width, view.height);
   glDisable(GL_BLEND);
 }
 
@@ -286,8 +310,7 @@ std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const Fram
   const glm::dmat3 turn =
       TurnOfSky(view.eye.place.latitude_rad(), SecondsBetween(made.request.now, view.now));
   const MoonDisk moon = sky.moon.value_or(MoonDisk{});
-  return StarPointsIn(
-      view, {made.stars, turn, faintest_lux, moon.direction.seen, moon.radius_rad, &made.bent});
+  return StarPointsIn(view, {made.stars, turn, faintest_lux, moon.direction.seen, moon.radius_rad});
 }
 
 std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const FrameSky& sky) const {

@@ -141,6 +141,7 @@ void ShaftPass::Bind(const ShaderProgram& picture, int unit) const {
 namespace {
 
 constexpr double kSunStep = 0.2;     // fraction of the disk's radius
+constexpr double kMostStep = 2.0;    // the same, of a light that brings little
 constexpr double kPlaceStep = 0.2;   // fraction of the ground's half width
 constexpr int kLinesOfAFrame = 256;  // two megabytes for a thousand columns
 
@@ -193,8 +194,8 @@ void ShadeFollower::SetGround(GroundSampler sampler) {
 
 void ShadeFollower::SetSize(const ShadeSize& size) { size_ = size; }
 
-ShadeFollower::Request ShadeFollower::RequestFor(const Place& eye,
-                                                 const DistantLight& light) const {
+ShadeFollower::Request ShadeFollower::RequestFor(const Place& eye, const DistantLight& light,
+                                                 double share) const {
   const LocalFrame here(ellipsoid_, eye);
   LocalFrame frame(ellipsoid_, {eye.latitude_deg, eye.longitude_deg, 0.0});
   // Heights are kept while the eye is near their centre.
@@ -202,13 +203,18 @@ ShadeFollower::Request ShadeFollower::RequestFor(const Place& eye,
   if (last && DistanceBetween(last->frame, frame) < kPlaceStep * size_.half_width_m)
     frame = last->frame;
   const Vector<Ecef> to_light = here.EcefFromEnu(Vector<Enu>{light.direction.seen});
-  return {ground_, size_, frame, glm::normalize(frame.EnuFromEcef(to_light).xyz), light.radius_rad};
+  return {ground_,
+          size_,
+          frame,
+          glm::normalize(frame.EnuFromEcef(to_light).xyz),
+          light.radius_rad,
+          std::min(kSunStep / share, kMostStep)};
 }
 
 bool ShadeFollower::Suits(const Request& requested, const Request& wanted) {
   return requested.ground == wanted.ground && requested.size == wanted.size &&
          AreOne(requested.frame, wanted.frame) &&
-         glm::length(requested.to_light - wanted.to_light) < kSunStep * wanted.radius_rad;
+         glm::length(requested.to_light - wanted.to_light) < wanted.most_step * wanted.radius_rad;
 }
 
 void ShadeFollower::PollFinished() {
@@ -223,15 +229,15 @@ void ShadeFollower::Upload(int lines, int unit) {
   if (texture_.Upload(lines, unit)) used_ = std::exchange(coming_, nullptr);
 }
 
-void ShadeFollower::Follow(const Place& eye, const DistantLight& light, int unit) {
+void ShadeFollower::Follow(const Place& eye, const DistantLight& light, double share, int unit) {
   // If the sun moves faster than maps are made, a finished map must still be shown.
-  if (!coming_) maker_.RequestWhenIdle(RequestFor(eye, light));
+  if (!coming_) maker_.RequestWhenIdle(RequestFor(eye, light, share));
   if (!coming_) PollFinished();
   Upload(kLinesOfAFrame, unit);
 }
 
 void ShadeFollower::WaitUntilReady(const Place& eye, const DistantLight& light, int unit) {
-  maker_.WaitUntilReady(RequestFor(eye, light));
+  maker_.WaitUntilReady(RequestFor(eye, light, 1.0));
   PollFinished();
   Upload(std::numeric_limits<int>::max(), unit);
 }

@@ -146,7 +146,10 @@ class ShadeFollower {
   /// Uploads finished maps through a texture unit and requests a new map if needed. Call it once
   /// per frame, before drawing. Never waits.
   /// @param light  in the frame east, north, up of the eye.
-  void Follow(const Place& eye, const DistantLight& light, int unit);
+  /// @param share  the largest part of the light of any direction of the sky that this light brings,
+  ///               in (0, 1]. The map of a light that brings little may be older: an edge of a shadow
+  ///               is displaced by at most 0.2 radii of the disk over the share, and by 2 radii.
+  void Follow(const Place& eye, const DistantLight& light, double share, int unit);
   /// Waits for the final result of Follow. Used for pictures that are saved.
   void WaitUntilReady(const Place& eye, const DistantLight& light, int unit);
 
@@ -168,6 +171,7 @@ class ShadeFollower {
     LocalFrame frame;
     glm::dvec3 to_light;  // in the frame
     double radius_rad;
+    double most_step;  // to the direction of another light that this map suits, in radii
   };
   struct Made {
     LocalFrame frame;
@@ -178,7 +182,7 @@ class ShadeFollower {
   /// Makes maps. It keeps the heights between maps of the same ground.
   class Maker;
 
-  [[nodiscard]] Request RequestFor(const Place& eye, const DistantLight& light) const;
+  [[nodiscard]] Request RequestFor(const Place& eye, const DistantLight& light, double share) const;
   [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
   void PollFinished();
   void Upload(int lines, int unit);

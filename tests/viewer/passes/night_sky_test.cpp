@@ -12,6 +12,7 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
+#include "lut/sky/sky_view.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/illumination/night_light.h"
 #include "renderer/picture/star_pixels.h"
@@ -168,13 +169,14 @@ TEST(StarPoints, LowStarsOfARotatedListAgreeWithTheNextList) {
     const RefractedView view(MediumPreset("earth"), place.height_m);
     const auto before = StarLightsOver(place, {61058, 73800.0}, view, colour, 5.0);
     const auto now = StarLightsOver(place, {61058, 73830.0}, view, colour, 5.0);
-    const StarrySky sky{before, TurnOfSky(place.latitude_rad(), 30.0), 0.0, {}, 0.0, &view};
+    const StarList stars(before, &view), later(now);
+    const glm::dmat3 turn = TurnOfSky(place.latitude_rad(), 30.0);
     int low = 0;
     for (std::size_t i = 0; i < now.size(); ++i) {
-      const double over_rad = std::asin(now[i].direction.z) - view.horizon_rad();
+      const double over_rad = std::asin(later.directions()[i].z) - view.horizon_rad();
       if (over_rad < 0.0 || over_rad > 10.0 * kRadiansPerDegree) continue;
       ++low;
-      EXPECT_LT(glm::length(TowardsStar(before[i], sky) - now[i].direction),
+      EXPECT_LT(glm::length(stars.Towards(i, turn) - later.directions()[i]),
                 0.1 / 60.0 * kRadiansPerDegree)
           << "a tenth of a minute of arc, as RefractedView; " << height_m << " m";
     }
@@ -317,6 +319,48 @@ TEST(LightsOfSky, TheSunLightsNoSummitWhenTheMoonIsFirst) {
   EXPECT_EQ(lights.front().body, LightSource::kMoon);
   const DistantLight& sun = lights.back();
   EXPECT_LT(std::asin(sun.direction.seen.z) + sun.radius_rad, -dip);
+}
+
+// Radiance by one light in the band nearest to 555 nm.
+double GreenRadiance(const DistantLight& light, const SkyView& sky, const glm::dvec3& towards) {
+  constexpr std::size_t kGreen = 2;
+  const glm::dvec3& to = light.direction.seen;
+  const double azimuth = std::atan2(towards.x, towards.y) - std::atan2(to.x, to.y);
+  return double{light.irradiance[kGreen]} *
+         double{sky.Radiance(std::acos(towards.z), azimuth)[kGreen]};
+}
+
+TEST(LightsOfSky, ShareOfTheKeyLightInTheSkyIsBounded) {
+  const Place eye{46.5, 8.0, 2000.0};
+  const AirOfSky air(std::make_shared<const SolvedAir>(
+      OnOsculatingSphere(MediumPreset("earth"), eye.latitude_rad())));
+  int moonlit = 0;
+  double most = 0.0;
+  for (const int day : {0, 1, 2, 28, 29}) {
+    for (const double elevation_deg : {-4.0, -5.0, -6.5, -8.0}) {
+      const UtcTime now =
+          WhenTheSunIsAt(elevation_deg * kRadiansPerDegree, eye, UtcTime{61043 + day, 41400.0});
+      const FrameSky sky = FrameSkyAt(eye, now, air);
+      if (sky.lights.size() == 1) continue;
+      ++moonlit;
+      std::vector<SkyView> views;
+      for (const DistantLight& light : sky.lights)
+        views.emplace_back(air.air->single_scattering(), air.air->multiple_scattering(),
+                           eye.height_m, light.direction.for_air.z);
+      for (double up = 0.5; up < 90.0; up += up < 10.0 ? 1.0 : 5.0) {
+        for (double azimuth = 0.0; azimuth < 360.0; azimuth += 5.0) {
+          const glm::dvec3 towards =
+              EnuFromAngles(up * kRadiansPerDegree, azimuth * kRadiansPerDegree).xyz;
+          const double key = GreenRadiance(sky.lights[0], views[0], towards);
+          const double share = key / (key + GreenRadiance(sky.lights[1], views[1], towards));
+          most = std::max(most, share / sky.key_share);
+          EXPECT_LE(share, MostShareOfKeyLight(sky)) << day << ' ' << elevation_deg << ' ' << up;
+        }
+      }
+    }
+  }
+  EXPECT_GT(moonlit, 5);
+  EXPECT_GT(most, 30.0) << "so that the factor of 60 is no waste";
 }
 
 }  // namespace

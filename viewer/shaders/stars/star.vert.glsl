@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The square of pixels that a star covers, unless land hides its centre: StarPoint of
+// The point of 5 x 5 pixels that a star covers, unless land hides its centre: StarPoint of
 // star_painter.h.
 in vec4 star_corner;
 in vec4 star_towards;
@@ -14,8 +14,8 @@ flat out vec4 last;
 flat out vec2 corner;
 
 uniform sampler2D surface_map;  // output of land/land.frag.glsl
-uniform vec2 picture_size;      // [pixels]
-uniform bool surface_hides;     // land hides stars by surface_map, of picture_size; else by depth
+uniform vec3 viewport;          // width, height, and its margin around the picture [pixels]
+uniform bool surface_hides;     // land hides stars by surface_map; else by depth
 
 bool IsHidden() {
   bool planet = SeesPlanet(star_towards.xyz);
@@ -30,7 +30,6 @@ void main() {
   up = star_up;
   last = star_last;
   corner = star_corner.xy;
-  vec2 at = corner + 5.0 * vec2(gl_VertexID % 2, gl_VertexID / 2);
-  vec2 screen = 2.0 * at / picture_size - 1.0;
+  vec2 screen = 2.0 * (corner + 2.5 + viewport.z) / viewport.xy - 1.0;
   gl_Position = IsHidden() ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(screen, -1.0, 1.0);  // depth 0
 }
