@@ -16,6 +16,21 @@ double HorizonDistance(double height_m) {
   return std::sqrt(above * (above + 2.0 * kRadius_m));
 }
 
+// Returns the distance that each level reaches. The reach of each available level grows gradually,
+// from coarse to fine.
+std::vector<double> ReachAfter(const LandChoiceOrder& order, const LandDemand& demand) {
+  constexpr double kReachTime_s = 0.7;  // time for a new level to reach its full range
+  std::vector<double> reach_m = order.reach_m;
+  reach_m.resize(static_cast<std::size_t>(order.tree->top()) + 1, 0.0);
+  for (std::size_t level = 0; level < reach_m.size(); ++level) {
+    const double full_m = order.detail * std::sqrt(order.eye.size.column_m * order.eye.size.row_m) *
+                          std::exp2(static_cast<double>(level));
+    const double grown_m = reach_m[level] + full_m * order.seconds / kReachTime_s;
+    reach_m[level] = std::min(demand.reach_m[level], grown_m);
+  }
+  return reach_m;
+}
+
 // Returns the next ceiling. The ground around the eye is as high as any chunk near it, minus its
 // distance.
 std::optional<double> CeilingOver(const std::vector<DrawnChunk>& around,
@@ -53,12 +68,17 @@ double SightFrom(double height_m) {
 
 LandChoice ChooseLand(const LandChoiceOrder& order) {
   constexpr double kHigh_m = 5000.0;  // over all ground nearby; little is hidden from there
+  const auto is_there = [&](const ChunkKey& key) { return order.set->Has(key); };
+  LandChoice choice;
+  choice.demand = DemandOf(*order.tree, order.eye, order.detail, is_there);
+  choice.reach_m = ReachAfter(order, choice.demand);
+  choice.ranges = RangesOf(choice.reach_m, order.eye);
   const std::vector<DrawnChunk> around =
-      DrawnChunks(*order.tree, order.eye, order.ranges,
-                  [&](const ChunkKey& key) { return order.set->Has(key); });
+      DrawnChunks(*order.tree, order.eye, choice.ranges, is_there);
   std::vector<SeenChunk> there = OnGpu(around, *order.set);
   const FrameTransform eye(order.set->anchor().frame, LocalFrame(order.ellipsoid, order.place));
-  LandChoice choice{{}, FarthestOf(there, eye), CeilingOver(around, order)};
+  choice.farthest_m = FarthestOf(there, eye);
+  choice.ceiling_m = CeilingOver(around, order);
   choice.drawn = InView(std::move(there), eye, order.view);
   if (order.is_over_ground && order.eye.above_m < kHigh_m)
     choice.drawn = WithoutHidden(choice.drawn, eye, order.view.bends_per_m);

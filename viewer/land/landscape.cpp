@@ -17,8 +17,6 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kReachTime_s = 0.7;  // time for a new level to reach its full range
-
 constexpr double kAnchorReach_m = 100e3;
 
 }  // namespace
@@ -30,7 +28,6 @@ Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellip
       ellipsoid_(ellipsoid),
       tree_(*tiles_),
       cache_(tiles_, tree_, size.most_bytes),
-      reach_m_(static_cast<std::size_t>(tree_.top()) + 1, 0.0),
       worker_(MakeChunks),
       chooser_(ChooseLand) {
   RequireInRange(size.detail, LandSize::kLeastDetail, LandSize::kMostDetail,
@@ -71,23 +68,6 @@ void Landscape::FollowView(double seconds) {
   detail_ = wanted + (detail_ - wanted) * std::exp(-seconds / kTime_s);
 }
 
-void Landscape::FindDemand(double seconds) {
-  demand_ = DemandOf(tree_, eye_, detail_, [&](const ChunkKey& key) { return set_->Has(key); });
-  set_->RecordWanted(demand_.wanted, frame_);
-  LetLevelsReach(seconds);
-}
-
-// Extends the reach of each available level gradually, from coarse to fine.
-void Landscape::LetLevelsReach(double seconds) {
-  for (std::size_t level = 0; level < reach_m_.size(); ++level) {
-    const double full = detail_ * std::sqrt(eye_.size.column_m * eye_.size.row_m) *
-                        std::exp2(static_cast<double>(level));
-    const double grown = reach_m_[level] + full * seconds / kReachTime_s;
-    reach_m_[level] = std::min(demand_.reach_m[level], grown);
-  }
-  ranges_ = RangesOf(reach_m_, eye_);
-}
-
 void Landscape::Relight(LightOfVertices light) {
   if (mesh_) return mesh_->Relight(std::move(light));
   fade_.Request(std::move(light));
@@ -100,8 +80,8 @@ bool Landscape::IsRelighting() const { return mesh_ ? mesh_->IsRelighting() : fa
 void Landscape::Choose(double seconds) {
   const std::optional<double> ground = ground_.HeightUnder(eye_place_);
   over_ground_ = ground && eye_place_.height_m > *ground;
-  chooser_.Request({&tree_, set_.get(), ellipsoid_, eye_place_, eye_, view_, ranges_, over_ground_,
-                    choice_.ceiling_m, seconds});
+  chooser_.Request({&tree_, set_.get(), ellipsoid_, eye_place_, eye_, view_, detail_, over_ground_,
+                    choice_.reach_m, choice_.ceiling_m, seconds});
 }
 
 double Landscape::farthest_m() const {
@@ -141,12 +121,12 @@ void Landscape::Update(const Place& eye, const LandView& view, double seconds) {
   for (std::string& note : cache_.PollNotes()) notes_.push_back(std::move(note));
   if (!set_) set_ = NewSet();
   PollChunks();
-  FindDemand(seconds);
+  set_->RecordWanted(choice_.demand.wanted, frame_);
   MoveAnchor();
   fade_.Advance(seconds, set_->IsLitBy(fade_.number()));
   RequestChunks();
   RequestLight();
-  set_->Evict(demand_.wanted.size() + demand_.wanted.size() / 4 + 64, frame_);
+  set_->Evict(choice_.demand.wanted.size() + choice_.demand.wanted.size() / 4 + 64, frame_);
   Choose(seconds);
 }
 
@@ -196,10 +176,11 @@ LandBlock Landscape::Block() const {
                                      eye_.radius_m(),
                                      lattice.ClosesAroundTheEarth() ? lattice.last_column : 0.0));
   block.eye_above.x = static_cast<float>(eye_.above_m);
-  for (std::size_t level = 0; level < ranges_.size(); ++level) {
+  const std::vector<LevelRange>& ranges = Choice().ranges;
+  for (std::size_t level = 0; level < ranges.size(); ++level) {
     // Rounding to float must not leave a vertex at the end of the range with a weight below 1.
-    const double end = 0.999 * ranges_[level].end_m;
-    const double start = std::min(ranges_[level].start_m, 0.98 * end);
+    const double end = 0.999 * ranges[level].end_m;
+    const double start = std::min(ranges[level].start_m, 0.98 * end);
     block.turning[level] = end > 0.0 ? glm::vec4(glm::dvec4(start, 1.0 / (end - start), 0.0, 0.0))
                                      : glm::vec4(-1.0F, 1e9F, 0.0F, 0.0F);
   }
@@ -247,13 +228,13 @@ bool Landscape::HasCome() const {
   if (!set_ || !ground_.IsKnownAt(eye_place_)) return false;
   if (!ground_.HeightUnder(eye_place_)) return true;
   if (!fade_.HasShown()) return false;
-  Choice();  // afterwards no other thread uses the tree
+  const LandChoice& choice = Choice();  // afterwards no other thread uses the tree
   const std::vector<ChunkKey> roots = tree_.Roots(eye_);
   const bool has_roots = std::all_of(roots.begin(), roots.end(), [&](const ChunkKey& root) {
     return set_->Has(root) || ChunkTree::Distance(root, eye_) > kAbout_m;
   });
   double full_m = detail_ * std::sqrt(eye_.size.column_m * eye_.size.row_m);
-  for (const double reach_m : reach_m_) {
+  for (const double reach_m : choice.reach_m) {
     if (reach_m < std::min(0.99 * full_m, kAbout_m)) return false;
     full_m *= 2.0;
   }
@@ -273,11 +254,11 @@ LandProgress Landscape::Progress() const {
             fmt::format("terrain: reading {}", tiles_->source().mesh->file.filename().string())};
   if (tiles_->tiles().empty() || !set_) return {};
   std::size_t there = 0;
-  for (const WantedChunk& wanted : demand_.wanted)
+  for (const WantedChunk& wanted : choice_.demand.wanted)
     if (set_->Has(wanted.key)) ++there;
   const double tiles = static_cast<double>(cache_.there()) / std::max(cache_.wanted(), 1);
   const double chunks = static_cast<double>(there) /
-                        static_cast<double>(std::max<std::size_t>(demand_.wanted.size(), 1));
+                        static_cast<double>(std::max<std::size_t>(choice_.demand.wanted.size(), 1));
   const double share = 0.5 * (tiles + chunks);
   if (!cache_.reading().empty() && tiles_->source().files.empty())
     return {share, "terrain: making the mountains of this place"};
@@ -285,8 +266,8 @@ LandProgress Landscape::Progress() const {
     return {share, fmt::format("terrain: reading {} ({} of {})", cache_.reading(),
                                cache_.there() + 1, cache_.wanted())};
   // Chunks for which no tile is kept fine enough never arrive, so they do not count as loading.
-  if (there == demand_.wanted.size() || !is_working_) return {};
-  return {share, fmt::format("terrain: {} of {} pieces", there, demand_.wanted.size())};
+  if (there == choice_.demand.wanted.size() || !is_working_) return {};
+  return {share, fmt::format("terrain: {} of {} pieces", there, choice_.demand.wanted.size())};
 }
 
 std::vector<std::string> Landscape::PollNotes() { return std::exchange(notes_, {}); }
@@ -337,10 +318,10 @@ std::unique_ptr<ChunkSet> Landscape::NewSet() const {
 // Builds a new set next to the old one. The new set replaces it when it has all wanted chunks.
 void Landscape::MoveAnchor() {
   if (next_set_) {
-    const bool has_all =
-        std::all_of(demand_.wanted.begin(), demand_.wanted.end(), [&](const WantedChunk& wanted) {
-          return !set_->Has(wanted.key) || next_set_->Has(wanted.key);
-        });
+    const bool has_all = std::all_of(choice_.demand.wanted.begin(), choice_.demand.wanted.end(),
+                                     [&](const WantedChunk& wanted) {
+                                       return !set_->Has(wanted.key) || next_set_->Has(wanted.key);
+                                     });
     if (!has_all) return;
     set_ = std::move(next_set_);
     choice_.drawn.clear();
@@ -365,7 +346,7 @@ void Landscape::PollChunks() {
 std::vector<ChunkKey> Landscape::Missing(const ChunkSet& set) const {
   constexpr std::size_t kMost = 48;  // limits the time that a frame spends on uploading
   std::vector<WantedChunk> missing;
-  for (const WantedChunk& wanted : demand_.wanted)
+  for (const WantedChunk& wanted : choice_.demand.wanted)
     if (!set.Has(wanted.key)) missing.push_back(wanted);
   std::sort(missing.begin(), missing.end(),
             [](const WantedChunk& a, const WantedChunk& b) { return a.urgency < b.urgency; });

@@ -154,8 +154,6 @@ class Landscape {
   void MoveAnchor();
   void PollChunks();
   void FollowView(double seconds);
-  void FindDemand(double seconds);
-  void LetLevelsReach(double seconds);
   void Request(const ChunkSet& set, std::vector<ChunkKey> make,
                std::vector<std::shared_ptr<const LandChunk>> relight);
   void RequestChunks();
@@ -181,9 +179,6 @@ class Landscape {
   LandView view_;
   bool over_ground_ = false;
   std::unique_ptr<ChunkSet> set_, next_set_;
-  LandDemand demand_;
-  std::vector<double> reach_m_;
-  std::vector<LevelRange> ranges_;
   mutable LandChoice choice_;  // the newest that Choice() has returned
   LightFade fade_;
   long frame_ = 0;

@@ -97,13 +97,20 @@ int RowsOfPlanet(const PaintedView& view, double radius_km) {
   const double horizon = shared::HorizonCosine(altitude_km, radius_km);
   const glm::dvec3 middle =
       axes.forward + view.part.x * view.part.z * axes.right + view.part.y * view.part.w * axes.up;
-  const auto over_horizon = [&](double x, double y) {
-    const glm::dvec3 d = middle + x * axes.right + y * axes.up;
-    return d.z - horizon * glm::length(d);
-  };
+  const double half_width = glm::length(axes.right);
+  const glm::dvec3 along = axes.right / half_width;
+  // With d = p + s a, where p is perpendicular to the row's axis a, the least value is where
+  // s / |d| = a.z / c.
+  constexpr double kMostSine = 1.0 - 1e-6;  // its tangent leads out of every picture
+  const double sine = std::clamp(along.z / std::min(horizon, -1e-9), -kMostSine, kMostSine);
+  const double tangent = sine / std::sqrt(1.0 - sine * sine);
   const auto least_of_row = [&](double y) {
-    const auto of_row = [&](double x) { return over_horizon(x, y); };
-    return of_row(LeastOf(of_row));
+    const glm::dvec3 row = middle + y * axes.up;
+    const double centre = glm::dot(row, along);
+    const glm::dvec3 p = row - centre * along;
+    const double s = std::clamp(glm::length(p) * tangent, centre - half_width, centre + half_width);
+    const glm::dvec3 d = p + s * along;
+    return d.z - horizon * glm::length(d);
   };
   double under = LeastOf(least_of_row), over = 1.0;
   if (least_of_row(under) >= 0.0) return 0;
