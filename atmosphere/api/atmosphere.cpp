@@ -18,8 +18,6 @@ namespace alpenglow {
 
 using atmosphere::Medium;
 
-static_assert(Spectrum::kMostBands == atmosphere::kMaxBands);
-
 struct Atmosphere::State {
   explicit State(const Medium& of_medium) : medium(of_medium) {
     if (!atmosphere::FaultOfColours(medium.wavelengths_nm)) colour.emplace(medium.wavelengths_nm);
@@ -97,12 +95,12 @@ LinearRgb Atmosphere::ColourOf(const Spectrum& light) const {
 
 const Medium& Atmosphere::medium() const { return state_->medium; }
 
-void Spectrum::RefuseSize(std::size_t bands) {
-  throw InputError(fmt::format("bands is {}; it must lie in [0, {}]", bands, kMostBands));
+void RefuseBands(std::size_t bands) {
+  throw InputError(fmt::format("bands is {}; it must lie in [0, {}]", bands, Spectrum::kMostBands));
 }
 
-void Spectrum::RefuseBand(std::size_t band, std::size_t size) {
-  throw InputError(fmt::format("band is {}; the spectrum has {} bands", band, size));
+void RefuseBand(std::size_t band, std::size_t bands) {
+  throw InputError(fmt::format("band is {}; the spectrum has {} bands", band, bands));
 }
 
 double Luminance(const LinearRgb& colour) {

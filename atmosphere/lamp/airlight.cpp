@@ -104,8 +104,8 @@ class LampRay {
     return value;
   }
 
-  void Accumulate(double x, double weight, Bands<double>& sum) const {
-    At(x, all_layers_, 0, sum.count,
+  void Accumulate(double x, double weight, SpectrumOf<double>& sum) const {
+    At(x, all_layers_, 0, sum.size(),
        [&](std::size_t band, double found) { sum[band] += weight * found; });
   }
 
@@ -533,7 +533,7 @@ FoundPanels FindPanels(const LampRay& ray, const Lamp& lamp, int nodes) {
   return found;
 }
 
-void Integrate(const LampRay& ray, const Panel& panel, Bands<double>& sum) {
+void Integrate(const LampRay& ray, const Panel& panel, SpectrumOf<double>& sum) {
   const GaussRule& rule = GaussLegendre(panel.nodes);
   const auto [low, high] = MappedPanel(panel);
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
@@ -546,9 +546,9 @@ void Integrate(const LampRay& ray, const Panel& panel, Bands<double>& sum) {
 
 }  // namespace
 
-Bands<double> Airlight(const LampAir& air, const Lamp& lamp, const LampSegment& segment,
-                       int nodes) {
-  Bands<double> sum(air.bands());
+SpectrumOf<double> Airlight(const LampAir& air, const Lamp& lamp, const LampSegment& segment,
+                            int nodes) {
+  SpectrumOf<double> sum(air.bands());
   if (!(segment.end_m > segment.begin_m)) return sum;
   const LampRay ray(air, lamp, segment);
   for (const Panel& panel : FindPanels(ray, lamp, nodes).panels) Integrate(ray, panel, sum);

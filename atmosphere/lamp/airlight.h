@@ -45,8 +45,8 @@ inline constexpr int kMostLampNodes = 64;
 /// `skyseries report`, and the bounds asserted in tests/atmosphere/lamp/airlight_test.cpp.
 /// @param nodes  total of all Gauss rules, in [kFewestLampNodes, kMostLampNodes]; each lit segment
 /// of the ray has at least two, so that a beam may need some more.
-[[nodiscard]] Bands<double> Airlight(const LampAir& air, const Lamp& lamp,
-                                     const LampSegment& segment, int nodes = 16);
+[[nodiscard]] SpectrumOf<double> Airlight(const LampAir& air, const Lamp& lamp,
+                                          const LampSegment& segment, int nodes = 16);
 
 /// Cost of Airlight: the number of points at which the ray is evaluated.
 struct AirlightEffort {

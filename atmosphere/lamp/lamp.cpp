@@ -136,8 +136,8 @@ double LampLayer::ColumnBetween(double length_m, double from_m, double to_m) con
 LampAir HomogeneousAir(double scattering_per_m, double extinction_per_m,
                        const PhaseFunction& phase) {
   LampLayer layer;
-  layer.scattering_per_m = Bands<double>(1);
-  layer.extinction_per_m = Bands<double>(1);
+  layer.scattering_per_m = SpectrumOf<double>(1);
+  layer.extinction_per_m = SpectrumOf<double>(1);
   layer.scattering_per_m[0] = scattering_per_m;
   layer.extinction_per_m[0] = extinction_per_m;
   layer.phase = phase;
@@ -148,19 +148,19 @@ double ExponentialColumn(double length_m, double rho_a, double rho_b, double ris
   return shared::LampColumn(length_m, rho_a, rho_b, rise_over_h);
 }
 
-Bands<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,
-                                   const glm::dvec3& to) {
+SpectrumOf<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,
+                                        const glm::dvec3& to) {
   const double length = glm::length(to - from);
   const double z_from = air.AltitudeOf(from);
   const double z_to = air.AltitudeOf(to);
-  Bands<double> tau(air.bands());
+  SpectrumOf<double> tau(air.bands());
   for (const LampLayer& layer : air.layers) {
     const double column = layer.ColumnBetween(length, z_from, z_to);
-    for (std::size_t band = 0; band < tau.count; ++band) {
+    for (std::size_t band = 0; band < tau.size(); ++band) {
       tau[band] += layer.extinction_per_m[band] * column;
     }
   }
-  for (std::size_t band = 0; band < tau.count; ++band) tau[band] = std::exp(-tau[band]);
+  for (std::size_t band = 0; band < tau.size(); ++band) tau[band] = std::exp(-tau[band]);
   return tau;
 }
 

@@ -88,9 +88,9 @@ inline constexpr std::size_t kMostLampLayers = 4;
 /// One constituent of the air around lamps.
 struct LampLayer {
   double scale_height_m = std::numeric_limits<double>::infinity();  // > 0; infinite: homogeneous
-  double base_m = 0.0;             // altitude for which the coefficients below are given
-  Bands<double> scattering_per_m;  // at its base
-  Bands<double> extinction_per_m;  // at its base, >= scattering
+  double base_m = 0.0;                  // altitude for which the coefficients below are given
+  SpectrumOf<double> scattering_per_m;  // at its base
+  SpectrumOf<double> extinction_per_m;  // at its base, >= scattering
   PhaseFunction phase;
 
   /// Returns the logarithm of the density relative to the density at the base; at most 80, see
@@ -107,7 +107,7 @@ struct LampAir {
   glm::dvec3 up{0.0, 0.0, 1.0};
   double altitude_at_origin_m = 0.0;
 
-  [[nodiscard]] std::size_t bands() const { return layers.front().scattering_per_m.count; }
+  [[nodiscard]] std::size_t bands() const { return layers.front().scattering_per_m.size(); }
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
 };
 
@@ -117,8 +117,8 @@ struct LampAir {
 
 /// Returns the transmittance of the straight line between two points, in every band. Relative error
 /// below 1e-12 times the optical depth, or 1e-12.
-[[nodiscard]] Bands<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,
-                                                 const glm::dvec3& to);
+[[nodiscard]] SpectrumOf<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,
+                                                      const glm::dvec3& to);
 
 /// Returns the column [m] over a length between points of relative densities rho_a and rho_b, which
 /// are rise_over_h = (z_b - z_a) / H scale heights apart.

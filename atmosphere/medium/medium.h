@@ -14,6 +14,8 @@
 // be rebuilt.
 #pragma once
 
+#include <alpenglow/spectrum.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -198,8 +200,8 @@ struct MediumUse {
   std::string_view purpose = "";  // in messages, such as "pictures"
 };
 
-/// Largest number of bands of light (Bands of atmosphere/ray/ray.h).
-inline constexpr std::size_t kMaxBands = 40;
+/// Largest number of bands of light (alpenglow/spectrum.h).
+inline constexpr std::size_t kMaxBands = Spectrum::kMostBands;
 inline constexpr MediumUse kForLight{.most_wavelengths = kMaxBands,
                                      .purpose = "integrals and tables"};
 inline constexpr MediumUse kForPictures{

@@ -40,7 +40,7 @@ const DirectRules& Rules() {
 
 ScatteredOnce<float> LightOf(std::size_t bands) {
   ScatteredOnce<float> light;
-  light.rayleigh.count = light.mie.count = bands;
+  light.rayleigh = light.mie = Spectrum(bands);
   return light;
 }
 

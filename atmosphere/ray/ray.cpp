@@ -198,11 +198,6 @@ ViewRay RayFromAngles(double altitude_m, double view_zenith_deg, double relative
   return ray;
 }
 
-void RefuseBands(std::size_t bands) {
-  throw InputError(
-      fmt::format("spectrum.wavelengths_nm has {} values; it must have 1 to {}", bands, kMaxBands));
-}
-
 double StartAltitude(const ViewRay& ray, double planet_radius_m) {
   const bool is_above = ray.altitude_m >= 0.0 || IsSegmentOfAir(ray, planet_radius_m);
   return is_above ? ray.altitude_m : 0.0;

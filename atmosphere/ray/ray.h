@@ -107,29 +107,6 @@ inline constexpr std::size_t kMaxRayPanels = 17;
 inline constexpr std::size_t kMaxRaySamples =
     kMaxRayPanels * static_cast<std::size_t>(kMaxGaussNodes) + 16;
 
-/// Throws the InputError of a number of wavelengths beyond kMaxBands.
-[[noreturn]] void RefuseBands(std::size_t bands);
-
-/// One value per wavelength.
-template <typename Real>
-struct Bands {
-  std::array<Real, kMaxBands> value;  // the first `count` values; the rest is never read
-  std::size_t count = 0;
-
-  Bands() = default;
-  /// Sets all values to zero. Throws InputError for more than kMaxBands.
-  explicit Bands(std::size_t bands) : count(bands) {
-    if (bands > kMaxBands) RefuseBands(bands);
-    std::fill_n(value.begin(), bands, Real(0));
-  }
-  Real& operator[](std::size_t band) { return value[band]; }
-  const Real& operator[](std::size_t band) const { return value[band]; }
-  friend bool operator==(const Bands& a, const Bands& b) {
-    return std::equal(a.value.begin(), a.value.begin() + static_cast<std::ptrdiff_t>(a.count),
-                      b.value.begin(), b.value.begin() + static_cast<std::ptrdiff_t>(b.count));
-  }
-};
-
 /// Number and placement of samples along a ray.
 struct Sampling {
   /// Gauss nodes of an ordinary ray, in [1, 32]. Rays past the limb and through the edge of the
@@ -181,7 +158,7 @@ struct alignas(64) RaySamples {
 /// irradiance [1].
 template <typename Real>
 struct ScatteredOnce {
-  Bands<Real> rayleigh, mie;
+  SpectrumOf<Real> rayleigh, mie;
 };
 
 /// Columns of molecules, aerosol and ozone: densities relative to the reference altitude of the

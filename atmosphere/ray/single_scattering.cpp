@@ -263,13 +263,12 @@ PhaseNodes::PhaseNodes(const Medium& medium) : bands_(medium.wavelengths_nm.size
   }
 }
 
-Bands<float> PhaseNodes::At(double nu) const {
+Spectrum PhaseNodes::At(double nu) const {
   const float position = PositionOf(nu);
   const auto cell = std::min(static_cast<std::size_t>(position), PhaseTable::kNodes - 2);
   const float share = position - static_cast<float>(cell);
   const float* low = &value_[cell * bands_];
-  Bands<float> values;
-  values.count = bands_;
+  Spectrum values(bands_);
   for (std::size_t band = 0; band < bands_; ++band)
     values[band] = low[band] + share * (low[bands_ + band] - low[band]);
   return values;
@@ -325,11 +324,11 @@ std::array<std::vector<Real>, 3> SingleScattering<Real>::ColumnsToSpace(
 }
 
 template <typename Real>
-Bands<Real> SingleScattering<Real>::TransmittanceToSpace(double altitude_m, double mu) const {
+SpectrumOf<Real> SingleScattering<Real>::TransmittanceToSpace(double altitude_m, double mu) const {
   const ViewRay ray{altitude_m, mu, 1.0, 1.0};
   if (mu < 0.0 || !(altitude_m >= 0.0 && altitude_m <= medium_.atmosphere_height_m)) {
     const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
-    if (extent.end == RayEnd::kGround) return Bands<Real>(bands());
+    if (extent.end == RayEnd::kGround) return SpectrumOf<Real>(bands());
     return TransmittanceAlong(ray);
   }
   const RayKernel<Real>& kernel = Kernel<RayKernel<Real>>();
@@ -337,7 +336,7 @@ Bands<Real> SingleScattering<Real>::TransmittanceToSpace(double altitude_m, doub
   rows.Set(0, altitude_m / kMetresPerKilometre, mu);
   kernel.columns_up(constants_, kernel.lanes, rows.altitude.data(), rows.mu.data(), rows.Targets());
   const ColumnSet<Real> columns = rows.At(0);
-  Bands<Real> transmittance(bands());
+  SpectrumOf<Real> transmittance(bands());
   for (std::size_t band = 0; band < bands(); ++band) {
     transmittance[band] = std::exp(-OpticalDepthOf(ExtinctionAt(constants_, band), columns));
   }
@@ -353,10 +352,10 @@ ColumnSet<Real> SingleScattering<Real>::ColumnsAlong(const ViewRay& ray) const {
 }
 
 template <typename Real>
-Bands<Real> SingleScattering<Real>::OpticalDepthAlong(const ViewRay& ray) const {
+SpectrumOf<Real> SingleScattering<Real>::OpticalDepthAlong(const ViewRay& ray) const {
   const ColumnSet<Real> columns = ColumnsAlong(ray);
   const Real metres = static_cast<Real>(kMetresPerKilometre);
-  Bands<Real> depth(bands());
+  SpectrumOf<Real> depth(bands());
   for (std::size_t band = 0; band < bands(); ++band) {
     depth[band] = metres * OpticalDepthOf(ExtinctionAt<Real>(medium_, band), columns);
   }
@@ -364,9 +363,9 @@ Bands<Real> SingleScattering<Real>::OpticalDepthAlong(const ViewRay& ray) const 
 }
 
 template <typename Real>
-Bands<Real> SingleScattering<Real>::TransmittanceAlong(const ViewRay& ray) const {
-  const Bands<Real> depth = OpticalDepthAlong(ray);
-  Bands<Real> transmittance(bands());
+SpectrumOf<Real> SingleScattering<Real>::TransmittanceAlong(const ViewRay& ray) const {
+  const SpectrumOf<Real> depth = OpticalDepthAlong(ray);
+  SpectrumOf<Real> transmittance(bands());
   for (std::size_t band = 0; band < bands(); ++band) transmittance[band] = std::exp(-depth[band]);
   return transmittance;
 }
@@ -414,30 +413,30 @@ RaySamples<Real> SingleScattering<Real>::SampleAt(const ViewRay& ray, const RayE
 
 template <typename Real>
 ScatteredOnce<Real> SingleScattering<Real>::Scatter(const RaySamples<Real>& samples) const {
-  ScatteredOnce<Real> scattered{Bands<Real>(bands()), Bands<Real>(bands())};
+  ScatteredOnce<Real> scattered{SpectrumOf<Real>(bands()), SpectrumOf<Real>(bands())};
   Kernel<RayKernel<Real>>().scatter(constants_, samples, scattered);
   return scattered;
 }
 
 template <typename Real>
-Bands<Real> SingleScattering<Real>::AerosolPhases(double nu) const {
+SpectrumOf<Real> SingleScattering<Real>::AerosolPhases(double nu) const {
   if constexpr (std::is_same_v<Real, float>) {
     if (!phase_nodes_.empty()) return phase_nodes_.At(nu);
   }
   const std::vector<PhaseFunction>& phases = medium_.mie_phase;
-  Bands<Real> values(bands());
+  SpectrumOf<Real> values(bands());
   for (std::size_t i = 0; i < phases.size(); ++i)
     values[i] = static_cast<Real>(Phase(phases[i], nu));
-  if (phases.size() == 1) std::fill_n(values.value.begin(), bands(), values[0]);
+  if (phases.size() == 1) std::fill_n(values.values().begin(), bands(), values[0]);
   return values;
 }
 
 template <typename Real>
-Bands<Real> SingleScattering<Real>::Inscatter(const ScatteredOnce<Real>& scattered,
-                                              double nu) const {
+SpectrumOf<Real> SingleScattering<Real>::Inscatter(const ScatteredOnce<Real>& scattered,
+                                                   double nu) const {
   const std::vector<double>& depolarisation = medium_.rayleigh_depolarisation;
   Real rayleigh_phase = Real(0);
-  Bands<Real> radiance = AerosolPhases(nu);
+  SpectrumOf<Real> radiance = AerosolPhases(nu);
   for (std::size_t band = 0; band < bands(); ++band) {
     if (band < depolarisation.size())
       rayleigh_phase = static_cast<Real>(shared::PhaseMolecules(nu, depolarisation[band]));

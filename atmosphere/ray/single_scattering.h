@@ -37,7 +37,7 @@ class PhaseNodes {
 
   /// Returns the values [1/sr] of every band, within 3e-5 of the tables.
   /// @param nu  in [-1, 1]; values beyond by rounding are clamped.
-  [[nodiscard]] Bands<float> At(double nu) const;
+  [[nodiscard]] Spectrum At(double nu) const;
 
  private:
   std::size_t bands_ = 0;
@@ -68,16 +68,16 @@ class SingleScattering {
                                                                 std::span<const Real> mu) const;
 
   /// Returns the transmittance from a point to space along mu; 0 if the ground blocks the way.
-  [[nodiscard]] Bands<Real> TransmittanceToSpace(double altitude_m, double mu) const;
+  [[nodiscard]] SpectrumOf<Real> TransmittanceToSpace(double altitude_m, double mu) const;
 
   /// Returns the columns between the observer and the end of the ray [km].
   [[nodiscard]] ColumnSet<Real> ColumnsAlong(const ViewRay& ray) const;
 
   /// Returns the optical depth between the observer and the end of the ray.
-  [[nodiscard]] Bands<Real> OpticalDepthAlong(const ViewRay& ray) const;
+  [[nodiscard]] SpectrumOf<Real> OpticalDepthAlong(const ViewRay& ray) const;
 
   /// Returns the transmittance between the observer and the end of the ray.
-  [[nodiscard]] Bands<Real> TransmittanceAlong(const ViewRay& ray) const;
+  [[nodiscard]] SpectrumOf<Real> TransmittanceAlong(const ViewRay& ray) const;
 
   [[nodiscard]] RaySamples<Real> Sample(const ViewRay& ray, const Sampling& sampling) const;
 
@@ -95,10 +95,10 @@ class SingleScattering {
 
   /// Returns the aerosol's phase function [1/sr] in every band. In float, tables are read from
   /// PhaseNodes, within 1e-4 (for dust with a peak of a degree) of the table's values.
-  [[nodiscard]] Bands<Real> AerosolPhases(double nu) const;
+  [[nodiscard]] SpectrumOf<Real> AerosolPhases(double nu) const;
 
   /// Returns the radiance per unit solar irradiance [1/sr]: phase functions applied.
-  [[nodiscard]] Bands<Real> Inscatter(const ScatteredOnce<Real>& scattered, double nu) const;
+  [[nodiscard]] SpectrumOf<Real> Inscatter(const ScatteredOnce<Real>& scattered, double nu) const;
 
  private:
   Medium medium_;

@@ -309,8 +309,8 @@ RefractedBeam::Node RefractedBeam::At(double altitude_m, double mu) const {
   return {mix(below.more_m, above.more_m, up), mix(below.log_spread, above.log_spread, up)};
 }
 
-Bands<float> RefractedBeam::OverStraight(double altitude_m, double mu) const {
-  Bands<float> over(bands_);
+Spectrum RefractedBeam::OverStraight(double altitude_m, double mu) const {
+  Spectrum over(bands_);
   const Node node = rows_.empty() ? Node{glm::dvec2(0.0), 0.0} : At(altitude_m, mu);
   for (std::size_t band = 0; band < bands_; ++band) {
     const double more =
@@ -320,10 +320,10 @@ Bands<float> RefractedBeam::OverStraight(double altitude_m, double mu) const {
   return over;
 }
 
-Bands<float> RefractedBeam::Left(const SingleScattering<float>& air, double altitude_m,
-                                 double mu) const {
-  Bands<float> left = air.TransmittanceToSpace(altitude_m, mu);
-  const Bands<float> over = OverStraight(altitude_m, mu);
+Spectrum RefractedBeam::Left(const SingleScattering<float>& air, double altitude_m,
+                             double mu) const {
+  Spectrum left = air.TransmittanceToSpace(altitude_m, mu);
+  const Spectrum over = OverStraight(altitude_m, mu);
   for (std::size_t band = 0; band < bands_; ++band) left[band] *= over[band];
   return left;
 }

@@ -169,13 +169,13 @@ class RefractedBeam {
   /// at its top. Irradiance of the beam is within 2 % of an integration along refracted rays from
   /// 0.1 degrees up at 0, 3 and 8 km, and within 3 % from 0.3 degrees over the horizon between the
   /// table's heights (tests/atmosphere/refraction/refracted_rays_test.cpp).
-  [[nodiscard]] Bands<float> OverStraight(double altitude_m, double mu) const;
+  [[nodiscard]] Spectrum OverStraight(double altitude_m, double mu) const;
 
   /// Returns the irradiance perpendicular to the beams of a sun with unit irradiance above the air.
   /// @param air  air of the medium.
   /// @param mu  apparent zenith cosine of the disk, not hidden by the planet.
-  [[nodiscard]] Bands<float> Left(const SingleScattering<float>& air, double altitude_m,
-                                  double mu) const;
+  [[nodiscard]] Spectrum Left(const SingleScattering<float>& air, double altitude_m,
+                              double mu) const;
 
  private:
   struct Node {

@@ -18,7 +18,6 @@
 
 namespace alpenglow {
 
-using atmosphere::Bands;
 using atmosphere::ViewRay;
 
 std::string_view Version() { return version::kRelease; }
@@ -68,11 +67,10 @@ ViewRay RayFrom(const AltitudeAndZenith& eye, const glm::dvec3& view, const glm:
 
 namespace {
 
-Spectrum SpectrumOf(const Bands<float>& bands) {
-  atmosphere::RequireFinite(std::span(bands.value.data(), bands.count), "light of a sky");
-  Spectrum spectrum(bands.count);
-  for (std::size_t band = 0; band < bands.count; ++band) spectrum[band] = bands[band];
-  return spectrum;
+// Returns the light unless it is not finite.
+const Spectrum& Checked(const Spectrum& light) {
+  atmosphere::RequireFinite(light.values(), "light of a sky");
+  return light;
 }
 
 lut::TableFolder SolvedWithoutTables(const atmosphere::Medium& medium) {
@@ -93,7 +91,7 @@ class RaysFrom {
         to_sun_(UnitVectorOf(to_sun)) {}
 
   [[nodiscard]] Spectrum Radiance(const Direction& view) const {
-    return SpectrumOf(lookup_.InscatterOfAllOrders(RayFrom(place_, UnitVectorOf(view), to_sun_)));
+    return Checked(lookup_.InscatterOfAllOrders(RayFrom(place_, UnitVectorOf(view), to_sun_)));
   }
 
   [[nodiscard]] AirBetween Between(const LocalPoint& object) const {
@@ -105,11 +103,11 @@ class RaysFrom {
     const atmosphere::SingleScattering<float>& air = lookup_.single_scattering();
     const auto samples = air.Sample(
         ray, {.nodes = lookup_.tables().ray_nodes, .split_ozone = false, .dark_samples = true});
-    Bands<float> light = air.Inscatter(air.Scatter(samples), ray.nu);
-    const Bands<float> more =
+    Spectrum light = air.Inscatter(air.Scatter(samples), ray.nu);
+    const Spectrum more =
         lookup_.multiple_scattering().InscatterAlong(samples, ray.nu, lut::SegmentEnd::kOpaque);
-    for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
-    return {SpectrumOf(air.TransmittanceAlong(ray)), SpectrumOf(light)};
+    for (std::size_t band = 0; band < light.size(); ++band) light[band] += more[band];
+    return {Checked(air.TransmittanceAlong(ray)), Checked(light)};
   }
 
  private:
@@ -172,14 +170,14 @@ std::vector<AirBetween> Sky::Between(const LocalPoint& eye, std::span<const Loca
 
 Spectrum Sky::SunIrradiance(const LocalPoint& point, const Direction& to_sun) const {
   const AltitudeAndZenith place = AltitudeOf(point, atmosphere().planet_radius_m());
-  return SpectrumOf(state_->lookup.SunIrradiance(place.altitude_m,
-                                                 CosineBetween(UnitVectorOf(to_sun), place.up)));
+  return Checked(state_->lookup.SunIrradiance(place.altitude_m,
+                                              CosineBetween(UnitVectorOf(to_sun), place.up)));
 }
 
 Spectrum Sky::SkyIrradiance(const LocalPoint& point, const Direction& to_sun) const {
   const AltitudeAndZenith place = AltitudeOf(point, atmosphere().planet_radius_m());
-  return SpectrumOf(state_->lookup.SkyIrradiance(place.altitude_m,
-                                                 CosineBetween(UnitVectorOf(to_sun), place.up)));
+  return Checked(state_->lookup.SkyIrradiance(place.altitude_m,
+                                              CosineBetween(UnitVectorOf(to_sun), place.up)));
 }
 
 }  // namespace alpenglow

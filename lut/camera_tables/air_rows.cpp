@@ -462,9 +462,9 @@ class WayBuilder {
 
 }  // namespace
 
-glm::vec4 Vec4Of(const Bands<float>& bands) { return Vec4Of(bands.value, bands.count); }
+glm::vec4 Vec4Of(const Spectrum& light) { return Vec4Of(light.values(), light.size()); }
 
-glm::vec4 Vec4Of(const std::array<float, kMaxBands>& per_band, std::size_t bands) {
+glm::vec4 Vec4Of(std::span<const float> per_band, std::size_t bands) {
   glm::vec4 texel(0.0F);
   for (std::size_t band = 0; band < bands; ++band)
     texel[static_cast<glm::length_t>(band)] = per_band[band];

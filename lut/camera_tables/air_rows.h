@@ -16,8 +16,8 @@ namespace alpenglow::lut {
 /// Returns the position of node i of n in [0, 1].
 [[nodiscard]] inline double Unit(int i, int n) { return static_cast<double>(i) / (n - 1); }
 
-[[nodiscard]] glm::vec4 Vec4Of(const Bands<float>& bands);
-[[nodiscard]] glm::vec4 Vec4Of(const std::array<float, kMaxBands>& per_band, std::size_t bands);
+[[nodiscard]] glm::vec4 Vec4Of(const Spectrum& light);
+[[nodiscard]] glm::vec4 Vec4Of(std::span<const float> per_band, std::size_t bands);
 
 /// Returns a / b, and 0 where either is not positive.
 [[nodiscard]] inline glm::vec4 Quotient(const glm::vec4& a, const glm::vec4& b) {

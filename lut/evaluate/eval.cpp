@@ -152,9 +152,9 @@ class TableEvaluator final : public Evaluator {
   }
 
  private:
-  [[nodiscard]] static Estimates ValuesOf(const Bands<float>& bands) {
-    Estimates values(bands.count);
-    for (std::size_t band = 0; band < bands.count; ++band)
+  [[nodiscard]] static Estimates ValuesOf(const Spectrum& bands) {
+    Estimates values(bands.size());
+    for (std::size_t band = 0; band < bands.size(); ++band)
       values[band].value = static_cast<double>(bands[band]);
     return values;
   }
@@ -173,7 +173,7 @@ class TableEvaluator final : public Evaluator {
     return StokesOf(work, ValuesOf(light.q), ValuesOf(light.u));
   }
 
-  [[nodiscard]] Bands<float> LookUp(Quantity quantity, const ViewRay& ray) const {
+  [[nodiscard]] Spectrum LookUp(Quantity quantity, const ViewRay& ray) const {
     switch (quantity) {
       case Quantity::kTransmittance:
         return tables_.Transmittance(ray);
@@ -197,15 +197,13 @@ class TableEvaluator final : public Evaluator {
   }
 
   /// Adds the light that the ground at the end of the ray reflects to the observer.
-  [[nodiscard]] Bands<float> WithGround(const ViewRay& ray, Bands<float> light,
-                                        bool under_the_sky) const {
+  [[nodiscard]] Spectrum WithGround(const ViewRay& ray, Spectrum light, bool under_the_sky) const {
     const std::optional<double> mu_s = SunOnGround(medium(), ray);
     if (!mu_s) return light;
-    const Bands<float> transmittance = tables_.Transmittance(ray);
-    const Bands<float> sun = tables_.SunIrradiance(0.0, *mu_s);
-    const Bands<float> sky =
-        under_the_sky ? tables_.SkyIrradiance(0.0, *mu_s) : Bands<float>(light.count);
-    for (std::size_t band = 0; band < light.count; ++band) {
+    const Spectrum transmittance = tables_.Transmittance(ray);
+    const Spectrum sun = tables_.SunIrradiance(0.0, *mu_s);
+    const Spectrum sky = under_the_sky ? tables_.SkyIrradiance(0.0, *mu_s) : Spectrum(light.size());
+    for (std::size_t band = 0; band < light.size(); ++band) {
       light[band] += transmittance[band] * (sun[band] + sky[band]) *
                      static_cast<float>(medium().ground_albedo[band] / kPi);
     }

@@ -195,9 +195,9 @@ class IntegralEvaluator final : public Evaluator {
 
   [[nodiscard]] Estimates OpticalDepth(const ViewRay& ray) const {
     if (NeedsReference(closed_form_error_)) return ReferenceOpticalDepth(ray);
-    const Bands<double> depth = air_.OpticalDepthAlong(ray);
-    Estimates result(depth.count);
-    for (std::size_t band = 0; band < depth.count; ++band) {
+    const SpectrumOf<double> depth = air_.OpticalDepthAlong(ray);
+    Estimates result(depth.size());
+    for (std::size_t band = 0; band < depth.size(); ++band) {
       result[band] = {depth[band], closed_form_error_ * depth[band]};
     }
     return result;
@@ -230,14 +230,15 @@ class IntegralEvaluator final : public Evaluator {
     return exponential(ReferenceOpticalDepth(ray));
   }
 
-  [[nodiscard]] Bands<double> InscatterWith(const ViewRay& ray, int nodes) const {
+  [[nodiscard]] SpectrumOf<double> InscatterWith(const ViewRay& ray, int nodes) const {
     const Sampling sampling{.nodes = nodes, .split_ozone = true, .dark_samples = false};
     return air_.Inscatter(air_.Scatter(air_.Sample(ray, sampling)), ray.nu);
   }
 
-  [[nodiscard]] Estimates Difference(const Bands<double>& fine, const Bands<double>& coarse) const {
-    Estimates result(fine.count);
-    for (std::size_t band = 0; band < fine.count; ++band) {
+  [[nodiscard]] Estimates Difference(const SpectrumOf<double>& fine,
+                                     const SpectrumOf<double>& coarse) const {
+    Estimates result(fine.size());
+    for (std::size_t band = 0; band < fine.size(); ++band) {
       result[band] = {fine[band],
                       std::abs(fine[band] - coarse[band]) + fast_path_floor_ * fine[band]};
     }
@@ -250,9 +251,9 @@ class IntegralEvaluator final : public Evaluator {
       return Difference(InscatterWith(ray, options_.samples), InscatterWith(ray, fewer));
     }
     if (*options_.max_error >= fast_path_floor_) {
-      Bands<double> coarse = InscatterWith(ray, kLadder.front());
+      SpectrumOf<double> coarse = InscatterWith(ray, kLadder.front());
       for (std::size_t rung = 1; rung < kLadder.size(); ++rung) {
-        const Bands<double> fine = InscatterWith(ray, kLadder[rung]);
+        const SpectrumOf<double> fine = InscatterWith(ray, kLadder[rung]);
         Estimates result = Difference(fine, coarse);
         if (WithinError(result, *options_.max_error)) return result;
         coarse = fine;
@@ -288,10 +289,10 @@ class IntegralEvaluator final : public Evaluator {
 
   /// Combines both differences and the floors into the error.
   /// @param least  error of light that is not resolved.
-  [[nodiscard]] static Estimates Differences(const Bands<float>& fine, const Bands<float>& middling,
-                                             const Bands<float>& coarse, double least) {
-    Estimates result(fine.count);
-    for (std::size_t band = 0; band < fine.count; ++band) {
+  [[nodiscard]] static Estimates Differences(const Spectrum& fine, const Spectrum& middling,
+                                             const Spectrum& coarse, double least) {
+    Estimates result(fine.size());
+    for (std::size_t band = 0; band < fine.size(); ++band) {
       const double value = fine[band];
       const double differences =
           std::abs(value - double{middling[band]}) + std::abs(value - double{coarse[band]});
@@ -312,12 +313,12 @@ class IntegralEvaluator final : public Evaluator {
                                    middling_light_->InscatterAlong(samples, ray.nu),
                                    coarse_light_->InscatterAlong(samples, ray.nu), LeastLight());
     if (backward_lobe_) {
-      const Bands<float> lobe = backward_lobe_->BackwardError(samples, ray.nu);
+      const Spectrum lobe = backward_lobe_->BackwardError(samples, ray.nu);
       for (std::size_t band = 0; band < result.size(); ++band)
         result[band].error = kFactorOfBackwardLobes * result[band].error + double{lobe[band]};
     }
     if (fine_light_->peak() && samples.extent.end == RayEnd::kLength) {
-      const Bands<float> opaque = fine_light_->InscatterAlong(samples, ray.nu, SegmentEnd::kOpaque);
+      const Spectrum opaque = fine_light_->InscatterAlong(samples, ray.nu, SegmentEnd::kOpaque);
       for (std::size_t band = 0; band < result.size(); ++band) {
         result[band].error +=
             kShareOfLightBehind * std::abs(result[band].value - double{opaque[band]});
@@ -340,7 +341,7 @@ class IntegralEvaluator final : public Evaluator {
     const PolarisedLight fine = fine_light_->PolarisationAlong(samples, ray.nu);
     const PolarisedLight middling = middling_light_->PolarisationAlong(samples, ray.nu);
     const PolarisedLight coarse = coarse_light_->PolarisationAlong(samples, ray.nu);
-    const auto sum = [&](const Bands<float>& first, const Estimates& more) {
+    const auto sum = [&](const Spectrum& first, const Estimates& more) {
       Estimates result = more;
       for (std::size_t band = 0; band < result.size(); ++band) {
         const auto value = static_cast<double>(first[band]);

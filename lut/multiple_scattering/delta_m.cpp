@@ -348,11 +348,11 @@ bool GlowAboutTheSun::Reaches(double nu) {
   return nu > cosine;
 }
 
-Bands<float> GlowAboutTheSun::FactorOf(double nu, float column_km) const {
-  Bands<float> factor(scattering_per_km_.size());
+Spectrum GlowAboutTheSun::FactorOf(double nu, float column_km) const {
+  Spectrum factor(scattering_per_km_.size());
   if (!Reaches(nu)) return factor;
   const TablePosition angle = PlaceOfAngle(nu);
-  for (std::size_t band = 0; band < factor.count; ++band) {
+  for (std::size_t band = 0; band < factor.size(); ++band) {
     const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
     const float y = std::min(scattering_per_km_[band] * column_km, shape.depth.back());
     const TablePosition place = PlaceOfDepth(shape, y);
@@ -376,17 +376,17 @@ DeltaM::DeltaM(const Medium& medium, int degree) : beam_(medium, degree) {
     shapes_.push_back(ScaledShapeOf(phase, degree));
 }
 
-Bands<float> ScaledBeam::At(double height_m, double mu_s) const {
+Spectrum ScaledBeam::At(double height_m, double mu_s) const {
   const Medium& medium = air_.medium();
   const double altitude_m = std::max(height_m, 0.0);
   const RayExtent extent =
       ExtentOf({altitude_m, mu_s, 1.0, 1.0}, medium.planet_radius_m, medium.atmosphere_height_m);
   if (extent.end == RayEnd::kGround || altitude_m >= medium.atmosphere_height_m)
-    return Bands<float>(air_.bands());
+    return Spectrum(air_.bands());
   const std::array<float, 3> columns_m = air_.ColumnsToSpace(altitude_m, mu_s);
   const auto km = [&](std::size_t i) { return 1e-3F * columns_m[i]; };
-  Bands<float> beam(air_.bands());
-  for (std::size_t band = 0; band < beam.count; ++band) {
+  Spectrum beam(air_.bands());
+  for (std::size_t band = 0; band < beam.size(); ++band) {
     const float depth = OpticalDepthOf(ExtinctionAt(air_.constants(), band), {km(0), km(1), km(2)});
     beam[band] = Gain(share_[band] * air_.constants().mie_scattering[band] * km(1), depth);
   }
@@ -425,18 +425,18 @@ float PeakAtAngle::LightOf(float y, float depth, float of_gas, float of_aerosol)
 }
 
 std::vector<PeakAtAngle> DeltaM::At(double nu) const {
-  const Bands<float> phase = air().AerosolPhases(nu);
+  const Spectrum phase = air().AerosolPhases(nu);
   std::vector<PeakAtAngle> peaks;
-  for (std::size_t band = 0; band < phase.count; ++band)
+  for (std::size_t band = 0; band < phase.size(); ++band)
     peaks.emplace_back(shapes_[shapes_.size() > 1 ? band : 0], nu, share(band), phase[band]);
   return peaks;
 }
 
-Bands<float> DeltaM::FactorOf(double nu, float column_km) const {
+Spectrum DeltaM::FactorOf(double nu, float column_km) const {
   constexpr auto kDeepestFactor = static_cast<float>(kDeepestGlow);
   const std::vector<PeakAtAngle> peaks = At(nu);
-  Bands<float> factor(peaks.size());
-  for (std::size_t band = 0; band < factor.count; ++band) {
+  Spectrum factor(peaks.size());
+  for (std::size_t band = 0; band < factor.size(); ++band) {
     const float y = std::min(air().constants().mie_scattering[band] * column_km, kDeepestFactor);
     factor[band] = std::exp(y) * peaks[band].LightOf(y, y, 0.0F, 1.0F);
   }
@@ -472,18 +472,18 @@ float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, doubl
   return sum;
 }
 
-Bands<float> DeltaM::Along(const RaySamples<float>& samples, double nu) const {
+Spectrum DeltaM::Along(const RaySamples<float>& samples, double nu) const {
   const std::vector<PeakAtAngle> peaks = At(nu);
-  Bands<float> light(air().bands());
-  for (std::size_t band = 0; band < light.count; ++band)
+  Spectrum light(air().bands());
+  for (std::size_t band = 0; band < light.size(); ++band)
     light[band] = SumAlong(band, samples, nu, peaks[band], {});
   return light;
 }
 
-Bands<float> DeltaM::Behind(const Way& way, const RaySamples<float>& samples, double nu) const {
+Spectrum DeltaM::Behind(const Way& way, const RaySamples<float>& samples, double nu) const {
   const std::vector<PeakAtAngle> peaks = At(nu);
-  Bands<float> light(air().bands());
-  for (std::size_t band = 0; band < light.count; ++band) {
+  Spectrum light(air().bands());
+  for (std::size_t band = 0; band < light.size(); ++band) {
     if (way.scattering[band] > 0.0F) {
       light[band] =
           SumAlong(band, samples, nu, peaks[band], {way.depth[band], way.scattering[band]});
@@ -497,15 +497,15 @@ bool DeltaM::HasBackwardLobe() const {
                      [](const PeakShape& shape) { return !shape.twice_back.empty(); });
 }
 
-Bands<float> DeltaM::BackwardError(const RaySamples<float>& samples, double nu) const {
+Spectrum DeltaM::BackwardError(const RaySamples<float>& samples, double nu) const {
   // Shares that contain the errors of path-traced lobes with g of -0.9 to -0.999: light of four
   // scatterings, of three, and of two at intermediate angles.
   constexpr float kFourTimes = 0.4F, kThrice = 0.1F, kBlurred = 0.5F;
   const AirConstants<float>& constants = air().constants();
-  const Bands<float> aerosol = air().AerosolPhases(nu);
+  const Spectrum aerosol = air().AerosolPhases(nu);
   const AngleTaps taps = TapsOfAngle(nu);
-  Bands<float> error(constants.bands);
-  for (std::size_t band = 0; band < error.count; ++band) {
+  Spectrum error(constants.bands);
+  for (std::size_t band = 0; band < error.size(); ++band) {
     const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
     if (shape.twice_back.empty()) continue;
     const float back = 0.5F * static_cast<float>(1.0 - nu) * aerosol[band];
@@ -536,9 +536,9 @@ DeltaM::Way DeltaM::WayTo(const RaySamples<float>& samples) const {
     mie += samples.weight[i] * samples.mie_density[i];
   }
   const float ozone = samples.count > 0 ? samples.view_ozone[LastSample(samples)] : 0.0F;
-  const Bands<float> none(air.bands);
+  const Spectrum none(air.bands);
   Way way{none, none, none, none};
-  for (std::size_t band = 0; band < none.count; ++band) {
+  for (std::size_t band = 0; band < none.size(); ++band) {
     way.depth[band] = OpticalDepthOf(ExtinctionAt(air, band), {rayleigh, mie, ozone});
     way.clear[band] = std::exp(-way.depth[band]);
     way.scattering[band] = air.mie_scattering[band] * mie;

@@ -120,7 +120,7 @@ class GlowAboutTheSun {
   /// Returns the factor of light scattered once by aerosol, without its phase function [1/sr].
   /// @param column_km  aerosol column at the density on the ground: from the sun to the point and
   ///   on to the eye.
-  [[nodiscard]] Bands<float> FactorOf(double nu, float column_km) const;
+  [[nodiscard]] Spectrum FactorOf(double nu, float column_km) const;
 
  private:
   std::vector<float> scattering_per_km_;
@@ -134,7 +134,7 @@ class ScaledBeam {
 
   /// Returns T' - T from a point to the sun; 0 where the ground hides the sun.
   /// @param height_m  below 0, the beam is that of altitude 0.
-  [[nodiscard]] Bands<float> At(double height_m, double mu_s) const;
+  [[nodiscard]] Spectrum At(double height_m, double mu_s) const;
 
   [[nodiscard]] const SingleScattering<float>& air() const { return air_; }
   [[nodiscard]] const std::vector<float>& share() const { return share_; }
@@ -203,30 +203,29 @@ class DeltaM {
   /// Returns the light of aerosol over light that it scatters once, without its phase function
   /// [1/sr]. Depths over 4 count as 4.
   /// @param column_km  as for GlowAboutTheSun::FactorOf.
-  [[nodiscard]] Bands<float> FactorOf(double nu, float column_km) const;
+  [[nodiscard]] Spectrum FactorOf(double nu, float column_km) const;
 
   /// Returns ScaledBeam::At.
-  [[nodiscard]] Bands<float> Beam(double height_m, double mu_s) const {
+  [[nodiscard]] Spectrum Beam(double height_m, double mu_s) const {
     return beam_.At(height_m, mu_s);
   }
 
   /// The path from the observer to the end of samples of the true medium.
   struct Way {
-    Bands<float> clear;       // T
-    Bands<float> more;        // T' - T
-    Bands<float> scattering;  // optical depth of scattering by aerosol
-    Bands<float> depth;       // optical depth
+    Spectrum clear;       // T
+    Spectrum more;        // T' - T
+    Spectrum scattering;  // optical depth of scattering by aerosol
+    Spectrum depth;       // optical depth
   };
   [[nodiscard]] Way WayTo(const RaySamples<float>& samples) const;
 
   /// Returns the sum of the formulas above along samples, without light scattered once [1/sr].
-  [[nodiscard]] Bands<float> Along(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Spectrum Along(const RaySamples<float>& samples, double nu) const;
 
   /// Returns the additional radiance that reaches the start of `way` because of the peak from
   /// samples beyond its end: the sum as seen from the start of `way`, minus the sum as seen from
   /// its end.
-  [[nodiscard]] Bands<float> Behind(const Way& way, const RaySamples<float>& samples,
-                                    double nu) const;
+  [[nodiscard]] Spectrum Behind(const Way& way, const RaySamples<float>& samples, double nu) const;
 
   /// Returns whether an aerosol has a narrow backward lobe, whose light of more than two
   /// scatterings is blurred.
@@ -234,7 +233,7 @@ class DeltaM {
 
   /// Returns an estimate of the light of a narrow backward lobe that Along and the moments of
   /// scaled air lack or misplace [1/sr].
-  [[nodiscard]] Bands<float> BackwardError(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Spectrum BackwardError(const RaySamples<float>& samples, double nu) const;
 
   [[nodiscard]] const SingleScattering<float>& air() const { return beam_.air(); }
 

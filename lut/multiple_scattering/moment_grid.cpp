@@ -262,10 +262,10 @@ class PieceScatterer {
         if (options.delta_m) {
           AddSeries(nu);
         } else {
-          const Bands<float> phases = marches.air().AerosolPhases(nu);
+          const Spectrum phases = marches.air().AerosolPhases(nu);
           mie_phase_.insert(
-              mie_phase_.end(), phases.value.begin(),
-              phases.value.begin() + static_cast<std::ptrdiff_t>(medium.mie_phase.size()));
+              mie_phase_.end(), phases.values().begin(),
+              phases.values().begin() + static_cast<std::ptrdiff_t>(medium.mie_phase.size()));
         }
       }
     }
@@ -357,7 +357,7 @@ void AddSunlitGround(const MomentMarches& marches, std::size_t altitude, const M
     const double mu_s = std::min(
         (r * marches.mu_s(sun) + march.ground_distance_km * nu) / marches.radius_km(), 1.0);
     if (mu_s <= 0.0) continue;
-    const Bands<float> light = air.TransmittanceToSpace(0.0, mu_s);
+    const Spectrum light = air.TransmittanceToSpace(0.0, mu_s);
     for (std::size_t band = 0; band < air.bands(); ++band) {
       radiance[band * rays + ray] +=
           march.ground_transmittance[band] * light[band] *

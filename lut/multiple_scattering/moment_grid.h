@@ -84,7 +84,7 @@ struct March {
   std::vector<double> panels;  // distances where the ray begins, is lowest (if between), ends [km]
   bool hits_ground = false;
   double ground_distance_km = 0.0;
-  Bands<float> ground_transmittance;
+  Spectrum ground_transmittance;
   std::vector<CubicTaps> ground_taps;  // [sun * azimuths + azimuth], for divided moments
 };
 

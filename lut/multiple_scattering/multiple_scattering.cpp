@@ -64,11 +64,11 @@ const Medium& Checked(const Medium& medium, const MultipleScatteringOptions& opt
 }
 
 // Adds `times` times the beam's light at a node to the values of the node.
-void AddBeam(const MultipleScatteringOptions& options, const Bands<float>& beam, double mu_s,
+void AddBeam(const MultipleScatteringOptions& options, const Spectrum& beam, double mu_s,
              float times, bool polarised, float* value) {
   const Moments towards = LegendreTerms(options.degree, static_cast<float>(mu_s));
   const auto add = [&](float share) {
-    for (std::size_t band = 0; band < beam.count; ++band, ++value)
+    for (std::size_t band = 0; band < beam.size(); ++band, ++value)
       *value += times * share * beam[band];
   };
   for (std::size_t i = 0; i < MomentCount(options.degree); ++i) add(towards[i]);
@@ -287,59 +287,57 @@ void MultipleScattering::VisitNodes(double altitude_coordinate, double mu_s,
   }
 }
 
-Bands<float> MultipleScattering::InscatterByMoments(const RaySamples<float>& samples,
-                                                    double nu) const {
+Spectrum MultipleScattering::InscatterByMoments(const RaySamples<float>& samples, double nu) const {
   alignas(64) std::array<float, kMaxBands + kBlockBands> light{};
   Kernel<MomentKernel>().inscatter(grid_, samples, static_cast<float>(nu), blocks_.data(),
                                    blocks_.size(), packed_.data(), light.data());
-  Bands<float> sum(bands_);
-  std::copy_n(light.begin(), bands_, sum.value.begin());
+  Spectrum sum(bands_);
+  std::copy_n(light.begin(), bands_, sum.values().begin());
   return sum;
 }
 
-Bands<float> MultipleScattering::InscatterAlong(const RaySamples<float>& samples, double nu,
-                                                double nu_seen, SegmentEnd end) const {
-  Bands<float> light = InscatterByMoments(samples, nu);
+Spectrum MultipleScattering::InscatterAlong(const RaySamples<float>& samples, double nu,
+                                            double nu_seen, SegmentEnd end) const {
+  Spectrum light = InscatterByMoments(samples, nu);
   if (samples.count == 0) return light;
   if (glow_ && GlowAboutTheSun::Reaches(nu_seen)) {
-    const Bands<float> glow = GlowAlong(samples, nu_seen);
+    const Spectrum glow = GlowAlong(samples, nu_seen);
     for (std::size_t band = 0; band < bands_; ++band)
       light[band] = std::max(light[band] + glow[band], 0.0F);
   }
   if (!peak_) return light;
   const bool is_hidden = end == SegmentEnd::kOpaque && samples.extent.end == RayEnd::kLength;
-  const Bands<float> more = peak_->Along(samples, nu_seen),
-                     behind = is_hidden ? Bands<float>(bands_) : PeakBehind(samples, nu, nu_seen);
+  const Spectrum more = peak_->Along(samples, nu_seen),
+                 behind = is_hidden ? Spectrum(bands_) : PeakBehind(samples, nu, nu_seen);
   for (std::size_t band = 0; band < bands_; ++band)
     light[band] = std::max(light[band] + more[band] + behind[band], 0.0F);
   return light;
 }
 
-Bands<float> MultipleScattering::GlowFactor(double nu, float column_km) const {
+Spectrum MultipleScattering::GlowFactor(double nu, float column_km) const {
   if (peak_) return peak_->FactorOf(nu, column_km);
-  return glow_ ? glow_->FactorOf(nu, column_km) : Bands<float>(bands_);
+  return glow_ ? glow_->FactorOf(nu, column_km) : Spectrum(bands_);
 }
 
 // The column is the mean over sunlit aerosol.
-Bands<float> MultipleScattering::GlowAlong(const RaySamples<float>& samples, double nu) const {
+Spectrum MultipleScattering::GlowAlong(const RaySamples<float>& samples, double nu) const {
   float lit_km = 0.0F, column = 0.0F;
   for (std::size_t i = 0; i < samples.count; ++i) {
     const float lit = samples.weight[i] * samples.lit[i] * samples.mie_density[i];
     lit_km += lit;
     column += lit > 0.0F ? lit * (samples.sun_mie[i] + samples.view_mie[i]) : 0.0F;
   }
-  if (!(lit_km > 0.0F)) return Bands<float>(bands_);
-  ScatteredOnce<float> once{Bands<float>(bands_), Bands<float>(bands_)};
+  if (!(lit_km > 0.0F)) return Spectrum(bands_);
+  ScatteredOnce<float> once{Spectrum(bands_), Spectrum(bands_)};
   Kernel<RayKernel<float>>().scatter(air_, samples, once);
-  Bands<float> glow = glow_->FactorOf(nu, column / lit_km);
+  Spectrum glow = glow_->FactorOf(nu, column / lit_km);
   for (std::size_t band = 0; band < bands_; ++band) glow[band] *= once.mie[band];
   return glow;
 }
 
-Bands<float> MultipleScattering::GroundLight(double mu_s) const {
-  Bands<float> light = SkyIrradiance(0.0, mu_s);
-  const Bands<float> sun =
-      mu_s > 0.0 ? peak_->air().TransmittanceToSpace(0.0, mu_s) : Bands<float>(bands_);
+Spectrum MultipleScattering::GroundLight(double mu_s) const {
+  Spectrum light = SkyIrradiance(0.0, mu_s);
+  const Spectrum sun = mu_s > 0.0 ? peak_->air().TransmittanceToSpace(0.0, mu_s) : Spectrum(bands_);
   for (std::size_t band = 0; band < bands_; ++band) {
     light[band] = static_cast<float>(medium_.ground_albedo[band] / kPi) *
                   (light[band] + static_cast<float>(std::max(mu_s, 0.0)) * sun[band]);
@@ -367,9 +365,9 @@ ViewRay MultipleScattering::RayBehind(const RaySamples<float>& samples, double n
 
 // Returns the part of the light from behind the end of samples that the forward peak adds. It comes
 // from the ground or, if the samples end before it, from the air and the ground that follow.
-Bands<float> MultipleScattering::PeakBehind(const RaySamples<float>& samples, double nu,
-                                            double nu_seen) const {
-  Bands<float> light(bands_), closed(bands_);
+Spectrum MultipleScattering::PeakBehind(const RaySamples<float>& samples, double nu,
+                                        double nu_seen) const {
+  Spectrum light(bands_), closed(bands_);
   if (samples.extent.end == RayEnd::kSpace) return light;
   const DeltaM::Way way = peak_->WayTo(samples);
   const ViewRay ray = RayBehind(samples, nu);
@@ -383,7 +381,7 @@ Bands<float> MultipleScattering::PeakBehind(const RaySamples<float>& samples, do
     closed = peak_->Behind(way, after, nu_seen);
     if (after.extent.end == RayEnd::kGround) {
       const DeltaM::Way further = peak_->WayTo(after);
-      const Bands<float> ground = GroundLight(RayBehind(after, nu).mu_s);
+      const Spectrum ground = GroundLight(RayBehind(after, nu).mu_s);
       for (std::size_t band = 0; band < bands_; ++band)
         light[band] += (further.clear[band] + further.more[band]) * ground[band];
     }
@@ -393,8 +391,8 @@ Bands<float> MultipleScattering::PeakBehind(const RaySamples<float>& samples, do
   return light;
 }
 
-Bands<float> MultipleScattering::Irradiance(double altitude_m, double mu_s, double normal_mu,
-                                            double normal_cos_azimuth) const {
+Spectrum MultipleScattering::Irradiance(double altitude_m, double mu_s, double normal_mu,
+                                        double normal_cos_azimuth) const {
   const CubicTaps row = TapsAt(AltitudeCoordinate(altitude_m), options_.altitudes);
   const double x = (mu_s - SunNodes().centre()) / SunNodes().width();
   const double cell = (std::asinh(x) - static_cast<double>(grid_.first_asinh)) *
@@ -412,28 +410,28 @@ Bands<float> MultipleScattering::Irradiance(double altitude_m, double mu_s, doub
   alignas(64) std::array<float, kMaxBands + kBlockBands> light{};
   Kernel<MomentKernel>().irradiance(grid_, point, blocks_.size(), packed_.data(),
                                     packed_sky_.data(), light.data());
-  Bands<float> irradiance(bands_);
-  std::copy_n(light.begin(), bands_, irradiance.value.begin());
+  Spectrum irradiance(bands_);
+  std::copy_n(light.begin(), bands_, irradiance.values().begin());
   if (peak_) {
     const double sines =
         static_cast<double>(SunSine(mu_s)) * static_cast<double>(SunSine(normal_mu));
     const double facing = std::max(normal_mu * mu_s + sines * normal_cos_azimuth, 0.0);
-    const Bands<float> beam = peak_->Beam(altitude_m, mu_s);
+    const Spectrum beam = peak_->Beam(altitude_m, mu_s);
     for (std::size_t band = 0; band < bands_; ++band)
       irradiance[band] += static_cast<float>(facing) * beam[band];
   }
   return irradiance;
 }
 
-Bands<float> MultipleScattering::SkyIrradiance(double altitude_m, double mu_s) const {
-  Bands<float> irradiance(bands_);
+Spectrum MultipleScattering::SkyIrradiance(double altitude_m, double mu_s) const {
+  Spectrum irradiance(bands_);
   VisitNodes(AltitudeCoordinate(altitude_m), mu_s,
              [&](const float* node, float weight, std::size_t) {
                for (std::size_t band = 0; band < bands_; ++band)
                  irradiance[band] += weight * node[(channels() - 1) * bands_ + band];
              });
   if (peak_) {
-    const Bands<float> beam = peak_->Beam(altitude_m, mu_s);
+    const Spectrum beam = peak_->Beam(altitude_m, mu_s);
     for (std::size_t band = 0; band < bands_; ++band)
       irradiance[band] += static_cast<float>(std::max(mu_s, 0.0)) * beam[band];
   }
@@ -472,10 +470,10 @@ std::size_t MultipleScattering::OrderOf(std::size_t channel) const {
   return channel - l * (l + 1) / 2;
 }
 
-std::array<Bands<float>, kTensorMoments> MultipleScattering::TensorAt(double altitude_m,
-                                                                      double mu_s) const {
-  std::array<Bands<float>, kTensorMoments> tensor;
-  tensor.fill(Bands<float>(bands_));
+std::array<Spectrum, kTensorMoments> MultipleScattering::TensorAt(double altitude_m,
+                                                                  double mu_s) const {
+  std::array<Spectrum, kTensorMoments> tensor;
+  tensor.fill(Spectrum(bands_));
   const float here = SunSine(mu_s);
   VisitNodes(
       AltitudeCoordinate(altitude_m), mu_s, [&](const float* node, float weight, std::size_t sun) {
@@ -489,7 +487,7 @@ std::array<Bands<float>, kTensorMoments> MultipleScattering::TensorAt(double alt
       });
   if (!peak_) return tensor;
   // Unpolarised light has T2m = L2m.
-  const Bands<float> beam = peak_->Beam(altitude_m, mu_s);
+  const Spectrum beam = peak_->Beam(altitude_m, mu_s);
   const Moments towards = LegendreTerms(2, static_cast<float>(mu_s));
   for (std::size_t m = 0; m < kTensorMoments; ++m) {
     for (std::size_t band = 0; band < bands_; ++band)
@@ -500,7 +498,7 @@ std::array<Bands<float>, kTensorMoments> MultipleScattering::TensorAt(double alt
 
 PolarisedLight MultipleScattering::PolarisationAlong(const RaySamples<float>& samples,
                                                      double nu) const {
-  PolarisedLight light{Bands<float>(bands_), Bands<float>(bands_)};
+  PolarisedLight light{Spectrum(bands_), Spectrum(bands_)};
   if (!medium_.polarised) return light;
   for (std::size_t s = 0; s < samples.count; ++s) {
     const float mu = samples.mu[s], mu_s = samples.mu_s[s];
@@ -508,7 +506,7 @@ PolarisedLight MultipleScattering::PolarisationAlong(const RaySamples<float>& sa
     const auto cosine = static_cast<float>(AzimuthCosineOrAhead(double{mu}, double{mu_s}, nu));
     const float across = SunSine(static_cast<double>(cosine));
     const TensorStokes<float> stokes = TensorStokesAlong<float>(mu, sine);
-    const std::array<Bands<float>, kTensorMoments> here =
+    const std::array<Spectrum, kTensorMoments> here =
         TensorAt(1000.0 * static_cast<double>(samples.altitude[s]),
                  SunNodes().MuS(SunCoordinate(static_cast<double>(mu_s))));
     for (std::size_t band = 0; band < bands_; ++band) {

@@ -117,26 +117,26 @@ class MultipleScattering {
   /// The result does not include light from the ground at the end of the ray. Beyond an open end it
   /// includes only the light that aerosol scatters forward to the eye (delta_m.h), not the
   /// light of objects there.
-  [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
-                                            SegmentEnd end = SegmentEnd::kOpen) const {
+  [[nodiscard]] Spectrum InscatterAlong(const RaySamples<float>& samples, double nu,
+                                        SegmentEnd end = SegmentEnd::kOpen) const {
     return InscatterAlong(samples, nu, nu, end);
   }
   /// Returns the light for a sun whose apparent position differs from that of the sun that lights
   /// the air (SunForAir of sun.h).
   /// @param nu_seen  cosine between the ray and the apparent sun: light that aerosol scatters
   ///   forward surrounds it.
-  [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
-                                            double nu_seen, SegmentEnd end) const;
+  [[nodiscard]] Spectrum InscatterAlong(const RaySamples<float>& samples, double nu, double nu_seen,
+                                        SegmentEnd end) const;
 
   /// Returns the part of InscatterAlong that the moments hold. AzimuthFan finds it for many
   /// azimuths.
-  [[nodiscard]] Bands<float> InscatterByMoments(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Spectrum InscatterByMoments(const RaySamples<float>& samples, double nu) const;
 
   /// Returns the factor of the light of aerosol that is added near the sun to the moments
   /// (GlowAboutTheSun in thin air, DeltaM::FactorOf with delta_m), over light scattered once by
   /// aerosol without its phase function [1/sr]; 0 with exact_orders.
   /// @param column_km  as for GlowAboutTheSun::FactorOf.
-  [[nodiscard]] Bands<float> GlowFactor(double nu, float column_km) const;
+  [[nodiscard]] Spectrum GlowFactor(double nu, float column_km) const;
 
   /// Returns Q and U of this light, with signs as in PolarisedLight; 0 if light is not polarised.
   [[nodiscard]] PolarisedLight PolarisationAlong(const RaySamples<float>& samples, double nu) const;
@@ -147,12 +147,12 @@ class MultipleScattering {
   /// It is computed from the moments by the clamped-cosine coefficients (Ramamoorthi, Hanrahan
   /// 2001) and corrected for the truncation error on horizontal surfaces. The error of those is
   /// within 2 % with earth's air.
-  [[nodiscard]] Bands<float> Irradiance(double altitude_m, double mu_s, double normal_mu,
-                                        double normal_cos_azimuth) const;
+  [[nodiscard]] Spectrum Irradiance(double altitude_m, double mu_s, double normal_mu,
+                                    double normal_cos_azimuth) const;
 
   /// Returns the diffuse irradiance on a horizontal plane from above [1], which is integrated over
   /// directions, not computed from the moments.
-  [[nodiscard]] Bands<float> SkyIrradiance(double altitude_m, double mu_s) const;
+  [[nodiscard]] Spectrum SkyIrradiance(double altitude_m, double mu_s) const;
 
   /// Returns the node values, for files and graphics cards: index ((altitude * sun_angles + sun) *
   /// channels() + channel) * bands() + band. Channels: the moments, l major (00, 10, 11, 20, ...),
@@ -179,11 +179,11 @@ class MultipleScattering {
   /// Returns the values that are interpolated: values(), minus the beam of peak() if that exists.
   [[nodiscard]] const std::vector<float>& smooth() const { return peak_ ? smooth_ : values_; }
   [[nodiscard]] std::vector<MomentBlock> BlocksOf() const;
-  [[nodiscard]] Bands<float> GlowAlong(const RaySamples<float>& samples, double nu) const;
-  [[nodiscard]] Bands<float> GroundLight(double mu_s) const;
+  [[nodiscard]] Spectrum GlowAlong(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Spectrum GroundLight(double mu_s) const;
   [[nodiscard]] ViewRay RayBehind(const RaySamples<float>& samples, double nu) const;
-  [[nodiscard]] Bands<float> PeakBehind(const RaySamples<float>& samples, double nu,
-                                        double nu_seen) const;
+  [[nodiscard]] Spectrum PeakBehind(const RaySamples<float>& samples, double nu,
+                                    double nu_seen) const;
   [[nodiscard]] AlignedFloats Packed() const;
   [[nodiscard]] std::vector<float> PackedSky() const;
   /// Calls visit(node, weight, sun) with the 16 nodes around a point; `sun` is the index of the
@@ -191,8 +191,7 @@ class MultipleScattering {
   template <typename Visit>
   void VisitNodes(double altitude_coordinate, double mu_s, const Visit& visit) const;
   /// Returns T2m of polarised light.
-  [[nodiscard]] std::array<Bands<float>, kTensorMoments> TensorAt(double altitude_m,
-                                                                  double mu_s) const;
+  [[nodiscard]] std::array<Spectrum, kTensorMoments> TensorAt(double altitude_m, double mu_s) const;
   /// Returns the order m of a channel.
   [[nodiscard]] std::size_t OrderOf(std::size_t channel) const;
   [[nodiscard]] double AltitudeCoordinate(double altitude_m) const;

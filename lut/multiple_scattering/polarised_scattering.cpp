@@ -21,8 +21,8 @@ PolarisedLight PolarisedOnce(const Medium& medium, const ScatteredOnce<float>& o
   // Components of the sun's direction on l and h of polarised_scattering.h.
   const double in_l = ray.mu * cosine * SineOf(ray.mu_s) - SineOf(ray.mu) * ray.mu_s;
   const double in_h = -SineOf(cosine) * SineOf(ray.mu_s);
-  PolarisedLight light{Bands<float>(once.rayleigh.count), Bands<float>(once.rayleigh.count)};
-  for (std::size_t band = 0; band < once.rayleigh.count; ++band) {
+  PolarisedLight light{Spectrum(once.rayleigh.size()), Spectrum(once.rayleigh.size())};
+  for (std::size_t band = 0; band < once.rayleigh.size(); ++band) {
     const double share = 3.0 / (16.0 * kPi) * 10.0 *
                          static_cast<double>(RayleighChi2(medium, band) * once.rayleigh[band]);
     light.q[band] = static_cast<float>(share * (in_h - in_l) * (in_h + in_l));

@@ -75,7 +75,7 @@ template <typename Number>
 /// eye, if the sun is to the left of the view (if it is to the right, U has the opposite sign). A
 /// vertical view counts as tilted towards the sun's azimuth.
 struct PolarisedLight {
-  Bands<float> q, u;
+  Spectrum q, u;
 };
 
 /// Returns the polarisation of sunlight that molecules scatter once into the ray: 3/(16 pi) D sin^2

@@ -53,7 +53,7 @@ class SolvedAir {
   /// Returns the irradiance perpendicular to the beams of a disk whose irradiance above the air is
   /// 1.
   /// @param mu  see RefractedBeam::Left.
-  [[nodiscard]] Bands<float> BeamLeft(double altitude_m, double mu) const {
+  [[nodiscard]] Spectrum BeamLeft(double altitude_m, double mu) const {
     return beam_->Left(*single_scattering_, altitude_m, mu);
   }
 

@@ -154,10 +154,8 @@ Transport::Transport(const MomentMarches& marches, std::size_t first_band)
     auto& transmittance = ground_transmittance_.emplace_back();
     for (const March& march : marches.At(altitude)) {
       lights.push_back(LightsOf(air, first_band, march));
-      const Bands<float>& ground = march.ground_transmittance;
-      transmittance.push_back(Of(
-          {ground.value.begin(), ground.value.begin() + static_cast<std::ptrdiff_t>(ground.count)},
-          first_band));
+      const Spectrum& ground = march.ground_transmittance;
+      transmittance.push_back(Of({ground.values().begin(), ground.values().end()}, first_band));
     }
   }
 }
@@ -550,7 +548,7 @@ std::vector<double> MissedShares(const MomentMarches& marches) {
   for (std::size_t sun = 0; sun < suns; ++sun) {
     for (const March& march : marches.At(0)) {
       for (std::size_t k = 0; k < marches.azimuths(); ++k) {
-        const Bands<float> around = marches.air().AerosolPhases(marches.Nu(march, sun, k));
+        const Spectrum around = marches.air().AerosolPhases(marches.Nu(march, sun, k));
         for (std::size_t phase = 0; phase < phases; ++phase)
           shares[phase * suns + sun] -= static_cast<double>(march.solid_angle * around[phase]);
       }
@@ -579,9 +577,8 @@ class MissedPeak {
   void Add(std::size_t altitude, std::size_t first_band, Field& field) const;
 
  private:
-  void AddBand(const Bands<float>& peak, std::size_t node, std::size_t first_band,
-               Field& field) const;
-  [[nodiscard]] Bands<float> PeakAt(std::size_t altitude, std::size_t sun) const;
+  void AddBand(const Spectrum& peak, std::size_t node, std::size_t first_band, Field& field) const;
+  [[nodiscard]] Spectrum PeakAt(std::size_t altitude, std::size_t sun) const;
 
   const MomentMarches& marches_;
   std::vector<double> shares_;
@@ -589,13 +586,13 @@ class MissedPeak {
 };
 
 // Returns the irradiance of the peak on a plane that faces the sun.
-Bands<float> MissedPeak::PeakAt(std::size_t altitude, std::size_t sun) const {
+Spectrum MissedPeak::PeakAt(std::size_t altitude, std::size_t sun) const {
   const SingleScattering<float>& air = marches_.air();
   const Medium& medium = air.medium();
   const double altitude_m = 1000.0 * marches_.altitude_km(altitude), mu_s = marches_.mu_s(sun);
-  Bands<float> peak = air.TransmittanceToSpace(altitude_m, mu_s);
+  Spectrum peak = air.TransmittanceToSpace(altitude_m, mu_s);
   const double aerosol_m = static_cast<double>(air.ColumnsToSpace(altitude_m, mu_s)[1]);
-  for (std::size_t band = 0; band < peak.count; ++band) {
+  for (std::size_t band = 0; band < peak.size(); ++band) {
     const std::size_t phase = medium.mie_phase.size() > 1 ? band : 0;
     peak[band] *= static_cast<float>(shares_[phase * marches_.grid().suns + sun] *
                                      medium.mie_scattering_per_m[band] * aerosol_m);
@@ -615,14 +612,14 @@ void MissedPeak::Add(std::size_t altitude, std::size_t first_band, Field& field)
   }
 }
 
-void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t first_band,
+void MissedPeak::AddBand(const Spectrum& peak, std::size_t node, std::size_t first_band,
                          Field& field) const {
   const Layout layout(marches_.grid());
   const std::size_t sun = node % layout.suns;
   const auto mu_s = static_cast<float>(marches_.mu_s(sun));
   const Moments towards = LegendreTerms(static_cast<int>(layout.degree), mu_s);
   Four light = {};
-  for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < peak.count; ++lane)
+  for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < peak.size(); ++lane)
     light[static_cast<int>(lane)] = peak[first_band + lane] / twilight_[sun];
   float* moments = field.moments() + node * layout.stride;
   for (std::size_t l = 0; l <= layout.degree; ++l) {

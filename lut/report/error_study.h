@@ -132,14 +132,14 @@ void ForEachCase(std::size_t count, const std::function<void(std::size_t)>& work
 
 /// Return all values of an answer, and the first one.
 template <typename Real>
-[[nodiscard]] std::vector<double> ValuesOf(const Bands<Real>& bands) {
-  std::vector<double> values(bands.count);
-  for (std::size_t band = 0; band < bands.count; ++band) values[band] = bands[band];
+[[nodiscard]] std::vector<double> ValuesOf(const SpectrumOf<Real>& bands) {
+  std::vector<double> values(bands.size());
+  for (std::size_t band = 0; band < bands.size(); ++band) values[band] = bands[band];
   return values;
 }
 [[nodiscard]] inline std::vector<double> ValuesOf(double value) { return {value}; }
 template <typename Real>
-[[nodiscard]] float FirstOf(const Bands<Real>& bands) {
+[[nodiscard]] float FirstOf(const SpectrumOf<Real>& bands) {
   return static_cast<float>(bands[0]);
 }
 [[nodiscard]] inline float FirstOf(double value) { return static_cast<float>(value); }
@@ -184,7 +184,7 @@ class ErrorStudy {
   }
 
   /// Measures a method on the cases of regime `r`.
-  /// @param answer  function from a case to Bands or a number. It is called on all threads at once.
+  /// @param answer  function from a case to a spectrum or a number. It is called on all threads at once.
   /// @param samples  number of points of the air of an answer, or a function from a case to it.
   template <typename Answer, typename Samples = int>
   void Measure(std::size_t r, RegimeResult& result, const Answer& answer,

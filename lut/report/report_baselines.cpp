@@ -51,10 +51,9 @@ struct BandCoefficients {
   }
 };
 
-Bands<float> TransmittanceOf(const Medium& medium, float rayleigh_km, float mie_km,
-                             float ozone_km) {
-  Bands<float> result(medium.wavelengths_nm.size());
-  for (std::size_t band = 0; band < result.count; ++band) {
+Spectrum TransmittanceOf(const Medium& medium, float rayleigh_km, float mie_km, float ozone_km) {
+  Spectrum result(medium.wavelengths_nm.size());
+  for (std::size_t band = 0; band < result.size(); ++band) {
     const BandCoefficients sigma(medium, band);
     result[band] = std::exp(-OpticalDepthOf(sigma.extinction, {rayleigh_km, mie_km, ozone_km}));
   }
@@ -102,8 +101,7 @@ std::vector<RayNode> MarchNodes(MarchRule rule, int steps, const RayExtent& exte
   return nodes;
 }
 
-Bands<float> MarchedTransmittance(const Medium& medium, const ViewRay& ray, MarchRule rule,
-                                  int steps) {
+Spectrum MarchedTransmittance(const Medium& medium, const ViewRay& ray, MarchRule rule, int steps) {
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
   const float h0 = Kilometres(ray.altitude_m), mu = static_cast<float>(ray.mu);
   const float radius = Kilometres(medium.planet_radius_m);
@@ -140,8 +138,8 @@ float ChapmanFunction(ChapmanRule rule, float x, float cos_chi) {
                         (x * c + std::sqrt(x * (1.47721F + 0.273828F * x * c * c)));
 }
 
-Bands<float> ChapmanTransmittance(const SingleScattering<float>& air, ChapmanRule rule,
-                                  const ViewRay& ray) {
+Spectrum ChapmanTransmittance(const SingleScattering<float>& air, ChapmanRule rule,
+                              const ViewRay& ray) {
   const Medium& medium = air.medium();
   const float h = Kilometres(ray.altitude_m), mu = static_cast<float>(ray.mu);
   const float radius = Kilometres(medium.planet_radius_m);
@@ -170,11 +168,11 @@ IsotropicTable::Light IsotropicTable::GatherFrom(const ViewRay& ray) const {
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
   const auto samples = air_.SampleAt(ray, MarchNodes(MarchRule::kMidpoint, size_.steps, extent));
   const std::optional<double> ground_mu_s = SunOnGround(medium, ray);
-  const Bands<float> along = air_.TransmittanceAlong(ray);
-  const Bands<float> beam = ground_mu_s && *ground_mu_s > 0.0
-                                ? air_.TransmittanceToSpace(0.0, *ground_mu_s)
-                                : Bands<float>(air_.bands());
-  Light light{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
+  const Spectrum along = air_.TransmittanceAlong(ray);
+  const Spectrum beam = ground_mu_s && *ground_mu_s > 0.0
+                            ? air_.TransmittanceToSpace(0.0, *ground_mu_s)
+                            : Spectrum(air_.bands());
+  Light light{Spectrum(air_.bands()), Spectrum(air_.bands())};
   for (std::size_t band = 0; band < air_.bands(); ++band) {
     const BandCoefficients sigma(medium, band);
     float direct = 0.0F;
@@ -198,7 +196,7 @@ void IsotropicTable::FillTexel(std::size_t row, std::size_t column) {
   const double mu_s = 2.0 * unit(column) - 1.0;
   const int side = size_.directions_side;
   const std::size_t bands = air_.bands();
-  Light mean{Bands<float>(bands), Bands<float>(bands)};
+  Light mean{Spectrum(bands), Spectrum(bands)};
   for (int k = 0; k < side * side; ++k) {
     const double mu = 1.0 - 2.0 * (k / side + 0.5) / side;
     const double azimuth = 2.0 * kPi * (k % side + 0.5) / side;
@@ -216,11 +214,11 @@ void IsotropicTable::FillTexel(std::size_t row, std::size_t column) {
   }
 }
 
-Bands<float> IsotropicTable::InscatterAlong(const RaySamples<float>& samples) const {
+Spectrum IsotropicTable::InscatterAlong(const RaySamples<float>& samples) const {
   const Medium& medium = air_.medium();
   const std::size_t bands = air_.bands();
   const double top = medium.atmosphere_height_m / kMetresPerKilometre;
-  Bands<float> light(bands);
+  Spectrum light(bands);
   std::vector<BandCoefficients> coefficients;
   for (std::size_t band = 0; band < bands; ++band) coefficients.emplace_back(medium, band);
   for (std::size_t i = 0; i < samples.count; ++i) {

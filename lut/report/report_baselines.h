@@ -29,8 +29,8 @@ enum class MarchRule {
 [[nodiscard]] std::vector<RayNode> MarchNodes(MarchRule rule, int steps, const RayExtent& extent);
 
 /// Returns the transmittance of a ray by a march through the densities, in float.
-[[nodiscard]] Bands<float> MarchedTransmittance(const Medium& medium, const ViewRay& ray,
-                                                MarchRule rule, int steps);
+[[nodiscard]] Spectrum MarchedTransmittance(const Medium& medium, const ViewRay& ray,
+                                            MarchRule rule, int steps);
 
 /// Closed approximations of Chapman's function Ch(X, chi) for X = (R + h) / H, cos(chi) >= 0.
 enum class ChapmanRule {
@@ -46,8 +46,8 @@ enum class ChapmanRule {
 
 /// Returns the transmittance to space. The exponential layers use a Chapman approximation, ozone
 /// uses the closed form of this library. The ray must not hit the ground.
-[[nodiscard]] Bands<float> ChapmanTransmittance(const SingleScattering<float>& air,
-                                                ChapmanRule rule, const ViewRay& ray);
+[[nodiscard]] Spectrum ChapmanTransmittance(const SingleScattering<float>& air, ChapmanRule rule,
+                                            const ViewRay& ray);
 
 /// Multiple scattering as in Hillaire (2020), A scalable and production ready sky and atmosphere
 /// rendering technique, Computer Graphics Forum 39, 13, section 5.5. Light of order two is assumed
@@ -69,14 +69,14 @@ class IsotropicTable {
 
   /// Returns the in-scattered light of orders two and up along a ray [1/sr]; samples as for
   /// MultipleScattering.
-  [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples) const;
+  [[nodiscard]] Spectrum InscatterAlong(const RaySamples<float>& samples) const;
 
   [[nodiscard]] std::uint64_t bytes() const { return texels_.size() * sizeof(float); }
 
  private:
   /// Light from one direction: of order two, and under radiance 1 from all directions.
   struct Light {
-    Bands<float> second, series;
+    Spectrum second, series;
   };
   [[nodiscard]] Light GatherFrom(const ViewRay& ray) const;
   void FillTexel(std::size_t row, std::size_t column);

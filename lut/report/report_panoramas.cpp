@@ -76,23 +76,23 @@ class DirectSky {
         nodes_(nodes),
         split_(split_ozone) {}
 
-  [[nodiscard]] Bands<Real> Radiance(const ViewRay& ray) const {
-    Bands<Real> light = air_.Inscatter(
+  [[nodiscard]] SpectrumOf<Real> Radiance(const ViewRay& ray) const {
+    SpectrumOf<Real> light = air_.Inscatter(
         air_.Scatter(air_.Sample(ray, {.nodes = nodes_, .split_ozone = split_})), ray.nu);
-    const Bands<float> rest = multiple_scattering_.InscatterAlong(
+    const Spectrum rest = multiple_scattering_.InscatterAlong(
         quick_.Sample(ray, {.nodes = nodes_, .dark_samples = true}), ray.nu);
-    for (std::size_t band = 0; band < light.count; ++band) light[band] += Real{rest[band]};
+    for (std::size_t band = 0; band < light.size(); ++band) light[band] += Real{rest[band]};
     if (const auto mu_s = SunOnGround(air_.medium(), ray)) AddGround(ray, *mu_s, light);
     return light;
   }
 
  private:
-  void AddGround(const ViewRay& ray, double mu_s, Bands<Real>& light) const {
-    const Bands<Real> through = air_.TransmittanceAlong(ray);
-    const Bands<Real> sun = air_.TransmittanceToSpace(0.0, mu_s);
-    const Bands<float> sky = multiple_scattering_.SkyIrradiance(0.0, mu_s);
+  void AddGround(const ViewRay& ray, double mu_s, SpectrumOf<Real>& light) const {
+    const SpectrumOf<Real> through = air_.TransmittanceAlong(ray);
+    const SpectrumOf<Real> sun = air_.TransmittanceToSpace(0.0, mu_s);
+    const Spectrum sky = multiple_scattering_.SkyIrradiance(0.0, mu_s);
     const Real cosine = static_cast<Real>(std::max(mu_s, 0.0));
-    for (std::size_t band = 0; band < light.count; ++band) {
+    for (std::size_t band = 0; band < light.size(); ++band) {
       const Real reflected = static_cast<Real>(air_.medium().ground_albedo[band] / kPi);
       light[band] += through[band] * reflected * (Real{sky[band]} + cosine * sun[band]);
     }
@@ -117,15 +117,15 @@ class LatitudeTable {
         const double v = 2.0 * y / (height - 1.0) - 1.0;
         const Direction direction{0, 0.5 * kPi * (1.0 + std::copysign(v * v, v)),
                                   2.0 * kPi * x / width};
-        const Bands<float> light = direct.Radiance(direction.Ray(mu_s, altitude_m));
-        std::copy_n(light.value.begin(), bands_,
+        const Spectrum light = direct.Radiance(direction.Ray(mu_s, altitude_m));
+        std::copy_n(light.values().begin(), bands_,
                     texels_.begin() + static_cast<std::ptrdiff_t>(Count(width_, y, bands_) +
                                                                   Count(x, 1, bands_)));
       }
     });
   }
 
-  [[nodiscard]] Bands<float> Radiance(double zenith_rad, double azimuth_rad) const {
+  [[nodiscard]] Spectrum Radiance(double zenith_rad, double azimuth_rad) const {
     const double latitude = zenith_rad / (0.5 * kPi) - 1.0;
     const double y =
         0.5 * (1.0 + std::copysign(std::sqrt(std::abs(latitude)), latitude)) * (height_ - 1.0);
@@ -137,7 +137,7 @@ class LatitudeTable {
     const float* right =
         &texels_[Count(width_, row, bands_) + Count((column + 1) % width_, 1, bands_)];
     const std::size_t below = Count(width_, 1, bands_);
-    Bands<float> light(bands_);
+    Spectrum light(bands_);
     for (std::size_t band = 0; band < bands_; ++band) {
       light[band] = (left[band] * (1.0F - fx) + right[band] * fx) * (1.0F - fy) +
                     (left[below + band] * (1.0F - fx) + right[below + band] * fx) * fy;

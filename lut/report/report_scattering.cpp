@@ -68,9 +68,9 @@ void AddOnSamples(RayStudy& study, ReportRow row, const SampleRay& sample, const
       std::move(row),
       [&](const ViewRay& ray) {
         const auto& [samples, once] = sample(ray);
-        Bands<float> light = study.air().Inscatter(once, ray.nu);
-        const Bands<float> more = higher(samples, ray.nu);
-        for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
+        Spectrum light = study.air().Inscatter(once, ray.nu);
+        const Spectrum more = higher(samples, ray.nu);
+        for (std::size_t band = 0; band < light.size(); ++band) light[band] += more[band];
         return light;
       },
       [&](const ViewRay& ray) { return sample(ray).samples.Nodes(); });
@@ -109,7 +109,7 @@ void AddMomentsOnDirectNodes(RayStudy& study, const DirectScattering& direct, Di
 
 void AddNothing(RayStudy& study) {
   AddOnGauss(study, {.series = "single scattering only", .parameter = "", .in_summary = true},
-             [&](const RaySamples<float>&, double) { return Bands<float>(study.air().bands()); });
+             [&](const RaySamples<float>&, double) { return Spectrum(study.air().bands()); });
 }
 
 void AddIsotropic(RayStudy& study, const IsotropicTable::Size& size, bool published) {

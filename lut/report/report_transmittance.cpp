@@ -29,7 +29,7 @@ void AddClosedForm(RayStudy& study, const std::string& type, bool in_summary) {
 void FillTransmittance(const SingleScattering<float>& air,
                        const std::vector<std::array<float, 3>>& sigma,
                        const std::vector<float>& altitudes_m, const std::vector<float>& mu,
-                       std::vector<Bands<float>>& answers) {
+                       std::vector<Spectrum>& answers) {
   const auto columns_m = air.ColumnsToSpace(altitudes_m, mu);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     for (std::size_t band = 0; band < air.bands(); ++band) {
@@ -55,14 +55,14 @@ void AddClosedFormOfMany(RayStudy& study) {
       altitudes_m.push_back(static_cast<float>(ray.altitude_m));
       mu.push_back(static_cast<float>(ray.mu));
     }
-    std::vector<Bands<float>> answers(mu.size(), Bands<float>(study.air().bands()));
+    std::vector<Spectrum> answers(mu.size(), Spectrum(study.air().bands()));
     const auto pass = [&] {
       FillTransmittance(study.air(), sigma, altitudes_m, mu, answers);
       return answers[0][0];
     };
     TimePasses(mu.size(), study.effort(), pass, row.at[r]);
     std::vector<std::vector<double>> values;
-    for (const Bands<float>& one : answers) values.push_back(ValuesOf(one));
+    for (const Spectrum& one : answers) values.push_back(ValuesOf(one));
     study.Judge(r, values, row.at[r]);
   }
   study.AddMeasured(std::move(row));

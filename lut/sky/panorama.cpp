@@ -30,7 +30,7 @@ constexpr int kSteps = 48;  // over half a turn
 PolarisedLight Along(const SingleScattering<float>& air,
                      const MultipleScattering& multiple_scattering, const ViewRay& ray) {
   const RaySamples<float> samples = air.Sample(ray, {.nodes = 16, .dark_samples = true});
-  PolarisedLight light{Bands<float>(air.bands()), Bands<float>(air.bands())};
+  PolarisedLight light{Spectrum(air.bands()), Spectrum(air.bands())};
   if (samples.count == 0 || !air.medium().polarised) return light;
   light = PolarisedOnce(air.medium(), air.Scatter(samples), ray);
   const PolarisedLight more = multiple_scattering.PolarisationAlong(samples, ray.nu);
@@ -79,11 +79,11 @@ std::vector<float> SrgbFromRelative(const Medium& medium, double sun_distance) {
   return scaled;
 }
 
-std::array<float, 3> Srgb(const std::vector<float>& matrix, const float* bands, std::size_t count) {
+std::array<float, 3> Srgb(const std::vector<float>& matrix, std::span<const float> light) {
   std::array<float, 3> rgb{};
   for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t band = 0; band < count; ++band)
-      rgb[c] += matrix[c * count + band] * bands[band];
+    for (std::size_t band = 0; band < light.size(); ++band)
+      rgb[c] += matrix[c * light.size() + band] * light[band];
   }
   return rgb;
 }
@@ -210,9 +210,9 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const SunInSky& su
 }
 
 /// Returns the fraction of the disk's light in each part, in each band.
-std::vector<Bands<float>> SharesOf(const std::vector<DiskPiece>& pieces,
-                                   const std::vector<double>& wavelengths_nm) {
-  std::vector<Bands<float>> shares(pieces.size());
+std::vector<Spectrum> SharesOf(const std::vector<DiskPiece>& pieces,
+                               const std::vector<double>& wavelengths_nm) {
+  std::vector<Spectrum> shares(pieces.size());
   for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
     const auto light = [&](const DiskPiece& piece) {
       return piece.weight * LimbDarkening(piece.rho, wavelengths_nm[band]);
@@ -220,7 +220,7 @@ std::vector<Bands<float>> SharesOf(const std::vector<DiskPiece>& pieces,
     double total = 0.0;
     for (const DiskPiece& piece : pieces) total += light(piece);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      shares[i].value[band] = static_cast<float>(light(pieces[i]) / total);
+      shares[i][band] = static_cast<float>(light(pieces[i]) / total);
     }
   }
   return shares;
@@ -229,13 +229,12 @@ std::vector<Bands<float>> SharesOf(const std::vector<DiskPiece>& pieces,
 void DrawSunDisk(const SingleScattering<float>& air, const PanoramaOptions& options,
                  const PanoramaGrid& grid, const std::vector<float>& srgb, HdrImage& image) {
   const std::vector<DiskPiece> pieces = PiecesOfDisk(grid, options.sun);
-  const std::vector<Bands<float>> shares = SharesOf(pieces, air.medium().wavelengths_nm);
+  const std::vector<Spectrum> shares = SharesOf(pieces, air.medium().wavelengths_nm);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const DiskPiece& piece = pieces[i];
-    Bands<float> seen =
-        air.TransmittanceToSpace(options.altitude_m, std::cos(piece.zenith_angle_rad));
-    for (std::size_t band = 0; band < seen.count; ++band) seen[band] *= shares[i].value[band];
-    const std::array<float, 3> rgb = Srgb(srgb, seen.value.data(), seen.count);
+    Spectrum seen = air.TransmittanceToSpace(options.altitude_m, std::cos(piece.zenith_angle_rad));
+    for (std::size_t band = 0; band < seen.size(); ++band) seen[band] *= shares[i][band];
+    const std::array<float, 3> rgb = Srgb(srgb, seen.values());
     const auto of_pixel = static_cast<float>(1.0 / grid.SolidAngle(piece.y));
     for (std::size_t c = 0; c < 3; ++c) image.at(piece.x, piece.y)[c] += of_pixel * rgb[c];
   }
@@ -298,8 +297,8 @@ PolarisedLight PolarisedRow::At(double azimuth_rad) const {
   const std::array<double, 4> weight{
       -t * (t - 1.0) * (t - 2.0) / 6.0, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
       -(t + 1.0) * t * (t - 2.0) / 2.0, (t + 1.0) * t * (t - 1.0) / 6.0};
-  const std::size_t bands = nodes_.front().q.count;
-  PolarisedLight light{Bands<float>(bands), Bands<float>(bands)};
+  const std::size_t bands = nodes_.front().q.size();
+  PolarisedLight light{Spectrum(bands), Spectrum(bands)};
   for (int i = 0; i < 4; ++i) {
     int k = first - 1 + i;
     if (k > kSteps) k -= 2 * kSteps;  // the same azimuth
@@ -359,8 +358,7 @@ HdrImage RenderPanorama(const SingleScattering<float>& air,
     for (int x = 0; x < grid.width; ++x) {
       const PolarisedLight light = row.At(from_sun[static_cast<std::size_t>(x)]);
       SetLayers(layers, static_cast<std::size_t>(y) * from_sun.size() + static_cast<std::size_t>(x),
-                Srgb(srgb, light.q.value.data(), light.q.count),
-                Srgb(srgb, light.u.value.data(), light.u.count), image);
+                Srgb(srgb, light.q.values()), Srgb(srgb, light.u.values()), image);
     }
   };
   oneapi::tbb::parallel_for(0, grid.height, [&](int y) {
@@ -368,7 +366,8 @@ HdrImage RenderPanorama(const SingleScattering<float>& air,
     std::vector<float> row(azimuths.count() * view.stride());
     view.FillRow(grid.ZenithAngle(y + 0.5), azimuths, row);
     for (int x = 0; x < grid.width; ++x) {
-      image.at(x, y) = Srgb(srgb, &row[static_cast<std::size_t>(x) * view.stride()], view.bands());
+      image.at(x, y) = Srgb(
+          srgb, std::span(row).subspan(static_cast<std::size_t>(x) * view.stride(), view.bands()));
     }
     if (!layers.empty()) add_polarisation(y);
     row_done();
@@ -389,11 +388,11 @@ double HorizontalIlluminance(const SingleScattering<float>& air,
   const double horizon = std::cos(SkyViewMap(medium, h, mu_s).horizon_zenith_angle_rad());
   const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun.angular_radius_rad());
   const double mu = disk.mu_s_effective;
-  const Bands<float> direct = air.TransmittanceToSpace(h, mu);
-  const Bands<float> sky =
+  const Spectrum direct = air.TransmittanceToSpace(h, mu);
+  const Spectrum sky =
       multiple_scattering.SkyIrradiance(h, std::sin(SunForAir(sun).elevation_rad()));
   std::vector<double> light;
-  for (std::size_t band = 0; band < sky.count; ++band) {
+  for (std::size_t band = 0; band < sky.size(); ++band) {
     light.push_back(medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au) *
                     (double{sky[band]} + disk.fraction * std::max(mu, 0.0) * double{direct[band]}));
   }

@@ -206,14 +206,14 @@ std::size_t TermsOf(const MultipleScattering& multiple_scattering) {
 
 // Returns the phase functions of the terms of aerosol at one angle: of light scattered once, with
 // the glow around the sun, or with the forward peak by depth and the backward lobe.
-std::vector<Bands<float>> PhasesAt(const SingleScattering<float>& air,
-                                   const MultipleScattering& multiple_scattering,
-                                   const AerosolTerms& terms, double nu) {
-  std::vector<Bands<float>> phases(terms.count, air.AerosolPhases(nu));
+std::vector<Spectrum> PhasesAt(const SingleScattering<float>& air,
+                               const MultipleScattering& multiple_scattering,
+                               const AerosolTerms& terms, double nu) {
+  std::vector<Spectrum> phases(terms.count, air.AerosolPhases(nu));
   const std::optional<DeltaM>& peak = multiple_scattering.peak();
   if (!peak) {
-    const Bands<float> glow = multiple_scattering.GlowFactor(nu, terms.glow_column_km);
-    for (std::size_t band = 0; band < glow.count; ++band) phases[0][band] += glow[band];
+    const Spectrum glow = multiple_scattering.GlowFactor(nu, terms.glow_column_km);
+    for (std::size_t band = 0; band < glow.size(); ++band) phases[0][band] += glow[band];
     return phases;
   }
   const std::vector<PeakAtAngle> at = peak->At(nu);
@@ -273,9 +273,9 @@ class GroundLight {
     for (int i = 0; i < nodes_; ++i) {
       const double v = least_ + (most_ - least_) * i / (nodes_ - 1);
       const double mu_s = MultipleScattering::SunNodes().MuS(v);
-      Bands<float> irradiance = multiple_scattering.SkyIrradiance(0.0, mu_s);
+      Spectrum irradiance = multiple_scattering.SkyIrradiance(0.0, mu_s);
       if (mu_s > 0.0) {
-        const Bands<float> sun = air.TransmittanceToSpace(0.0, mu_s);
+        const Spectrum sun = air.TransmittanceToSpace(0.0, mu_s);
         for (std::size_t band = 0; band < bands_; ++band)
           irradiance[band] += static_cast<float>(mu_s) * sun[band];
       }
@@ -286,11 +286,11 @@ class GroundLight {
     }
   }
 
-  [[nodiscard]] Bands<float> At(double mu_s) const {
+  [[nodiscard]] Spectrum At(double mu_s) const {
     const double width = std::max(most_ - least_, 1e-12);
     const CubicTaps taps =
         TapsAt((MultipleScattering::SunCoordinate(mu_s) - least_) / width, nodes_);
-    Bands<float> light(bands_);
+    Spectrum light(bands_);
     for (std::size_t tap = 0; tap < 4; ++tap) {
       const float* node = &light_[taps.node[tap] * bands_];
       for (std::size_t band = 0; band < bands_; ++band)
@@ -490,10 +490,10 @@ class SkyView::Builder {
     const std::vector<float> rest =
         fan_.InscatterAlong(samples, {altitude_m_, mu, mu_s_, 0.0}, nus);
     const bool ground = samples.extent.end == RayEnd::kGround;
-    const Bands<float> through = ground ? Through(under_zenith_sun, samples) : Bands<float>(0);
+    const Spectrum through = ground ? Through(under_zenith_sun, samples) : Spectrum(0);
     const double r = air_.medium().planet_radius_m + std::max(altitude_m_, 0.0);
     for (std::size_t k = 0; k < nus.size(); ++k) {
-      Bands<float> reflected(view_.bands_);
+      Spectrum reflected(view_.bands_);
       if (ground) {
         reflected = ground_light_.At(std::clamp(
             (r * mu_s_ + samples.extent.end_m * double{nus[k]}) / air_.medium().planet_radius_m,
@@ -507,11 +507,11 @@ class SkyView::Builder {
   }
 
   // Returns the fraction of the light of the ground that is seen around its true direction.
-  [[nodiscard]] Bands<float> Through(const ViewRay& ray, const RaySamples<float>& samples) const {
-    Bands<float> through = air_.TransmittanceAlong(ray);
+  [[nodiscard]] Spectrum Through(const ViewRay& ray, const RaySamples<float>& samples) const {
+    Spectrum through = air_.TransmittanceAlong(ray);
     if (!peak_) return through;
     const DeltaM::Way way = peak_->WayTo(samples);
-    for (std::size_t band = 0; band < through.count; ++band) through[band] += way.more[band];
+    for (std::size_t band = 0; band < through.size(); ++band) through[band] += way.more[band];
     return through;
   }
 
@@ -606,8 +606,8 @@ void SkyView::FillRow(double zenith_angle_rad, const SkyAzimuths& azimuths,
 }
 
 // This sums the four nodes of the look-up instead of the whole row.
-Bands<float> SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) const {
-  Bands<float> radiance(bands_);
+Spectrum SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) const {
+  Spectrum radiance(bands_);
   const std::optional<RowPosition> at = PositionOfRow(zenith_angle_rad);
   if (!at) return radiance;
   const AzimuthTap tap = TapAt(map_, size_.azimuths, azimuth_rad);

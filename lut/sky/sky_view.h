@@ -110,7 +110,7 @@ class SkyView {
   /// Returns the radiance per unit solar irradiance [1/sr] of every band, never negative.
   /// @param zenith_angle_rad  in [0, pi]; up to the zenith angle of the horizon it is the sky,
   /// beyond it the ground.
-  [[nodiscard]] Bands<float> Radiance(double zenith_angle_rad, double azimuth_rad) const;
+  [[nodiscard]] Spectrum Radiance(double zenith_angle_rad, double azimuth_rad) const;
 
   /// Computes the radiance for a row of directions of one zenith angle:
   /// radiance[i * stride() + band]. The caller owns the memory because allocating it would cost as

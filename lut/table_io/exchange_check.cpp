@@ -184,7 +184,7 @@ class Comparison {
 };
 
 template <typename Real>
-Rgba TimesSun(const Medium& medium, const Bands<Real>& unit) {
+Rgba TimesSun(const Medium& medium, const SpectrumOf<Real>& unit) {
   Rgba rgba{};
   for (std::size_t c = 0; c < 3; ++c) {
     rgba[c] = static_cast<double>(unit[2 - c]) * medium.solar_irradiance[2 - c];
@@ -208,7 +208,7 @@ class Reference {
   [[nodiscard]] CheckedTexel At(std::size_t texel, const MultipleScattering& light) const {
     const ViewRay ray = RayOf(texel);
     auto once = air_.Scatter(air_.Sample(ray, {.nodes = 24}));
-    for (std::size_t band = 0; band < once.rayleigh.count; ++band)
+    for (std::size_t band = 0; band < once.rayleigh.size(); ++band)
       once.rayleigh[band] *= PhaseOverThatOfLoaders(medium_, band, ray.nu);
     Rgba more = TimesSun(medium_, HigherOrdersAlong(quick_air_, light, ray));
     for (double& value : more) value /= shared::PhaseRayleigh<double>(ray.nu);

@@ -64,7 +64,7 @@ TexelFormat FormatOf(const ExportOptions& options) {
 }
 
 /// Returns a texel. Red, green and blue are the bands from the longest wavelength to the shortest.
-std::array<float, 4> RgbaTexel(const Medium& medium, const Bands<float>& unit, bool times_sun,
+std::array<float, 4> RgbaTexel(const Medium& medium, const Spectrum& unit, bool times_sun,
                                float alpha) {
   std::array<float, 4> rgba{0.0F, 0.0F, 0.0F, alpha};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -87,8 +87,8 @@ ExchangeTexture TransmittanceTexture(const Medium& medium) {
   const TransmittanceTable table(medium, kTransmittanceSize);
   ExchangeTexture texture = EmptyTexture(kTransmittanceShape);
   for (std::size_t texel = 0; texel < texture.width * texture.height; ++texel) {
-    Bands<float> transmittance(3);
-    std::copy_n(&table.texels()[3 * texel], 3, transmittance.value.begin());
+    Spectrum transmittance(3);
+    std::copy_n(&table.texels()[3 * texel], 3, transmittance.values().begin());
     Put(texture, texel, RgbaTexel(medium, transmittance, false, 1.0F));
   }
   return texture;
@@ -124,7 +124,7 @@ class HigherOrdersOfRays {
     for (std::size_t nu = 0; nu < size.nu; ++nu) {
       for (std::size_t mu_s = 0; mu_s < size.mu_s; ++mu_s) {
         const ViewRay ray = rays_.RayOfTexel(nu, mu_s, row % size.mu, row / size.mu);
-        const Bands<float> more = HigherOrdersAlong(air_, light_, ray);
+        const Spectrum more = HigherOrdersAlong(air_, light_, ray);
         const auto phase = static_cast<float>(shared::PhaseRayleigh<double>(ray.nu));
         for (std::size_t band = 0; band < 3; ++band) values.push_back(more[band] / phase);
       }
@@ -155,7 +155,7 @@ std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium,
     if (Interrupted()) return;
     const std::vector<float> more = higher.Row(row);
     for (std::size_t x = 0; x < width; ++x) {
-      Bands<float> molecules(3), mie(3), orders(3);
+      Spectrum molecules(3), mie(3), orders(3);
       const float* texel = &once.texels()[6 * (row * width + x)];
       const double nu = once.RayOfTexel(x / kScatteringSize.mu_s, x % kScatteringSize.mu_s,
                                         row % kScatteringSize.mu, row / kScatteringSize.mu)
@@ -312,8 +312,8 @@ MultipleScattering FourOrdersOf(const Medium& medium) {
   return MultipleScattering(medium, kFourOrders);
 }
 
-Bands<float> HigherOrdersAlong(const SingleScattering<float>& air, const MultipleScattering& light,
-                               const ViewRay& ray) {
+Spectrum HigherOrdersAlong(const SingleScattering<float>& air, const MultipleScattering& light,
+                           const ViewRay& ray) {
   return light.InscatterAlong(air.Sample(ray, kHigherOrderSampling), ray.nu);
 }
 

@@ -96,8 +96,8 @@ inline constexpr ScatteringTableSize kExchangeScatteringSize{
 /// Return the light scattered two to four times [1/sr], for unit solar irradiance. These are the
 /// orders that the tables contain.
 [[nodiscard]] MultipleScattering FourOrdersOf(const Medium& medium);
-[[nodiscard]] Bands<float> HigherOrdersAlong(const SingleScattering<float>& air,
-                                             const MultipleScattering& light, const ViewRay& ray);
+[[nodiscard]] Spectrum HigherOrdersAlong(const SingleScattering<float>& air,
+                                         const MultipleScattering& light, const ViewRay& ray);
 
 /// One texture in the layout of those programs: texel (x, y, z) is rgba[4 * ((z * height + y) *
 /// width + x)], with 3-D textures stacked along the rows.

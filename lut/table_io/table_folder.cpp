@@ -154,23 +154,23 @@ bool TableLookup::HasTransmittanceFor(const ViewRay& ray) const {
   return tables_.transmittance && !SubmergedPart(ray, extent, air.planet_radius_m).Exists();
 }
 
-Bands<float> TableLookup::Transmittance(const ViewRay& ray) const {
+Spectrum TableLookup::Transmittance(const ViewRay& ray) const {
   if (HasTransmittanceFor(ray)) return tables_.transmittance->LookupAlong(ray);
   return air_.TransmittanceAlong(ray);
 }
 
-Bands<float> TableLookup::OpticalDepth(const ViewRay& ray) const {
+Spectrum TableLookup::OpticalDepth(const ViewRay& ray) const {
   if (!HasTransmittanceFor(ray)) return air_.OpticalDepthAlong(ray);
-  Bands<float> depth = tables_.transmittance->LookupAlong(ray);
+  Spectrum depth = tables_.transmittance->LookupAlong(ray);
   // A transmittance that the table stores as 0 gets the optical depth of the smallest float.
   constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
-  for (std::size_t band = 0; band < depth.count; ++band) {
+  for (std::size_t band = 0; band < depth.size(); ++band) {
     depth[band] = -std::log(std::max(depth[band], kSmallest));
   }
   return depth;
 }
 
-Bands<float> TableLookup::InscatterOnce(const ViewRay& ray) const {
+Spectrum TableLookup::InscatterOnce(const ViewRay& ray) const {
   if (HasTableFor(ray)) {
     return air_.Inscatter(tables_.single_scattering->Lookup(ray), ray.nu);
   }
@@ -178,13 +178,13 @@ Bands<float> TableLookup::InscatterOnce(const ViewRay& ray) const {
   return air_.Inscatter(air_.Scatter(air_.Sample(ray, lit)), ray.nu);
 }
 
-Bands<float> TableLookup::InscatterOfAllOrders(const ViewRay& ray) const {
+Spectrum TableLookup::InscatterOfAllOrders(const ViewRay& ray) const {
   const Sampling all{.nodes = tables_.ray_nodes, .split_ozone = false, .dark_samples = true};
   const RaySamples<float> samples = air_.Sample(ray, all);
-  Bands<float> light = tables_.single_scattering ? InscatterOnce(ray)
-                                                 : air_.Inscatter(air_.Scatter(samples), ray.nu);
-  const Bands<float> more = multiple_scattering().InscatterAlong(samples, ray.nu);
-  for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
+  Spectrum light = tables_.single_scattering ? InscatterOnce(ray)
+                                             : air_.Inscatter(air_.Scatter(samples), ray.nu);
+  const Spectrum more = multiple_scattering().InscatterAlong(samples, ray.nu);
+  for (std::size_t band = 0; band < light.size(); ++band) light[band] += more[band];
   return light;
 }
 
@@ -193,23 +193,23 @@ PolarisedLight TableLookup::PolarisationOfAllOrders(const ViewRay& ray) const {
   const RaySamples<float> samples = air_.Sample(ray, all);
   PolarisedLight light = PolarisedOnce(tables_.medium, air_.Scatter(samples), ray);
   const PolarisedLight more = multiple_scattering().PolarisationAlong(samples, ray.nu);
-  for (std::size_t band = 0; band < light.q.count; ++band) {
+  for (std::size_t band = 0; band < light.q.size(); ++band) {
     light.q[band] += more.q[band];
     light.u[band] += more.u[band];
   }
   return light;
 }
 
-Bands<float> TableLookup::SunIrradiance(double altitude_m, double mu_s) const {
-  if (mu_s <= 0.0) return Bands<float>(bands());
-  Bands<float> irradiance = Transmittance({altitude_m, mu_s, mu_s, 1.0});
-  for (std::size_t band = 0; band < irradiance.count; ++band) {
+Spectrum TableLookup::SunIrradiance(double altitude_m, double mu_s) const {
+  if (mu_s <= 0.0) return Spectrum(bands());
+  Spectrum irradiance = Transmittance({altitude_m, mu_s, mu_s, 1.0});
+  for (std::size_t band = 0; band < irradiance.size(); ++band) {
     irradiance[band] *= static_cast<float>(mu_s);
   }
   return irradiance;
 }
 
-Bands<float> TableLookup::SkyIrradiance(double altitude_m, double mu_s) const {
+Spectrum TableLookup::SkyIrradiance(double altitude_m, double mu_s) const {
   return multiple_scattering().SkyIrradiance(altitude_m, mu_s);
 }
 

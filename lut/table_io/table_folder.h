@@ -84,18 +84,18 @@ class TableLookup {
   [[nodiscard]] std::size_t bands() const { return air_.bands(); }
 
   /// Return transmittance and optical depth to the end of the ray.
-  [[nodiscard]] Bands<float> Transmittance(const ViewRay& ray) const;
-  [[nodiscard]] Bands<float> OpticalDepth(const ViewRay& ray) const;
+  [[nodiscard]] Spectrum Transmittance(const ViewRay& ray) const;
+  [[nodiscard]] Spectrum OpticalDepth(const ViewRay& ray) const;
   /// Return the light that the air along the ray scatters towards the observer [1/sr]: once, and in
   /// all orders (which needs the table of multiple scattering).
-  [[nodiscard]] Bands<float> InscatterOnce(const ViewRay& ray) const;
-  [[nodiscard]] Bands<float> InscatterOfAllOrders(const ViewRay& ray) const;
+  [[nodiscard]] Spectrum InscatterOnce(const ViewRay& ray) const;
+  [[nodiscard]] Spectrum InscatterOfAllOrders(const ViewRay& ray) const;
   /// Returns Q and U of InscatterOfAllOrders; 0 if light is not polarised.
   [[nodiscard]] PolarisedLight PolarisationOfAllOrders(const ViewRay& ray) const;
   /// Return the irradiance on a horizontal plane [1]: the sun's, and the sky's (needs multiple
   /// scattering).
-  [[nodiscard]] Bands<float> SunIrradiance(double altitude_m, double mu_s) const;
-  [[nodiscard]] Bands<float> SkyIrradiance(double altitude_m, double mu_s) const;
+  [[nodiscard]] Spectrum SunIrradiance(double altitude_m, double mu_s) const;
+  [[nodiscard]] Spectrum SkyIrradiance(double altitude_m, double mu_s) const;
 
  private:
   [[nodiscard]] bool HasTableFor(const ViewRay& ray) const;

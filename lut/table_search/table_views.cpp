@@ -75,8 +75,8 @@ double RelativeDistance(const std::vector<double>& a, const std::vector<double>&
   return length == 0.0 ? 0.0 : length / Length(b);
 }
 
-std::vector<double> Values(const Bands<float>& bands) {
-  return {bands.value.begin(), bands.value.begin() + static_cast<std::ptrdiff_t>(bands.count)};
+std::vector<double> Values(const Spectrum& bands) {
+  return {bands.values().begin(), bands.values().end()};
 }
 
 ReferenceView ViewReference(const Medium& medium, const SingleScattering<float>& air,
@@ -87,8 +87,7 @@ ReferenceView ViewReference(const Medium& medium, const SingleScattering<float>&
     return view;
   }
   reference::RayRadiance once = reference::SingleScatteringAlong(medium, view.ray);
-  const Bands<float> more =
-      finest.InscatterAlong(air.Sample(view.ray, kFinestSampling), view.ray.nu);
+  const Spectrum more = finest.InscatterAlong(air.Sample(view.ray, kFinestSampling), view.ray.nu);
   view.light = std::move(once.inscatter);
   for (std::size_t band = 0; band < view.light.size(); ++band) {
     view.light[band] += static_cast<double>(more[band]);
@@ -103,8 +102,8 @@ double ErrorOf(const TableLookup& tables, const ReferenceView& view) {
                             view.light);
   }
   double error = RelativeDistance(Values(tables.InscatterOfAllOrders(view.ray)), view.light);
-  const Bands<float> transmittance = tables.Transmittance(view.ray);
-  for (std::size_t band = 0; band < transmittance.count; ++band) {
+  const Spectrum transmittance = tables.Transmittance(view.ray);
+  for (std::size_t band = 0; band < transmittance.size(); ++band) {
     const auto value = static_cast<double>(transmittance[band]);
     error = std::max(error, std::abs(value - view.transmittance[band]));
   }

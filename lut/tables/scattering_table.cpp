@@ -130,8 +130,8 @@ void ScatteringTable::FillRow(std::size_t row) {
       const ScatteredOnce<float> light =
           air_.Scatter(air_.Sample(RayOfTexel(nu, mu_s, mu, altitude), kTexelSampling));
       float* texel = &texels_[IndexOf(nu, mu_s, mu, altitude)];
-      std::copy_n(light.rayleigh.value.begin(), bands, texel);
-      std::copy_n(light.mie.value.begin(), bands, texel + bands);
+      std::copy_n(light.rayleigh.values().begin(), bands, texel);
+      std::copy_n(light.mie.values().begin(), bands, texel + bands);
       if (axes_ == ScatteringAxes::kAzimuth) {
         std::transform(texel, texel + 2 * bands, texel, Root);
       }
@@ -246,7 +246,7 @@ ScatteredOnce<float> ScatteringTable::Interpolate(const Start& start, double nu)
   }
   // If the value of a shorter ray is extrapolated to a longer one, the sum may exceed the available
   // light. Between dark and bright texels a cubic may fall below 0.
-  ScatteredOnce<float> light{Bands<float>(bands), Bands<float>(bands)};
+  ScatteredOnce<float> light{Spectrum(bands), Spectrum(bands)};
   const auto value = [&](float stored) {
     const float positive = std::max(stored, 0.0F);
     return std::min(axes_ == ScatteringAxes::kAzimuth ? Power(positive) : positive, 1.0F);
@@ -272,7 +272,7 @@ ScatteringTable::Start ScatteringTable::StartAt(const ViewRay& ray, double dista
 ScatteredOnce<float> ScatteringTable::Lookup(const ViewRay& ray) const {
   const RayExtent extent = ExtentOf(ray, medium().planet_radius_m, medium().atmosphere_height_m);
   if (extent.begin_m == extent.end_m) {
-    return {Bands<float>(air_.bands()), Bands<float>(air_.bands())};
+    return {Spectrum(air_.bands()), Spectrum(air_.bands())};
   }
   if (extent.end == RayEnd::kLength) return LookupSegment(ray, extent);
   return Interpolate(StartAt(ray, extent.begin_m, extent.end == RayEnd::kGround), ray.nu);
@@ -286,7 +286,7 @@ ScatteredOnce<float> ScatteringTable::LookupSegment(const ViewRay& ray,
                       RayEnd::kGround;
   ScatteredOnce<float> light = Interpolate(StartAt(ray, extent.begin_m, ground), ray.nu);
   const ScatteredOnce<float> beyond = Interpolate(StartAt(ray, extent.end_m, ground), ray.nu);
-  const Bands<float> transmittance = air_.TransmittanceAlong(ray);
+  const Spectrum transmittance = air_.TransmittanceAlong(ray);
   for (std::size_t band = 0; band < air_.bands(); ++band) {
     const auto rest = [&](float all, float hidden) {
       return std::max(all - transmittance[band] * hidden, 0.0F);

@@ -23,9 +23,9 @@ std::size_t RequireSize(const Medium& medium, const TransmittanceTableSize& size
   return static_cast<std::size_t>(bytes) / sizeof(float);
 }
 
-Bands<float> Constant(std::size_t bands, float value) {
-  Bands<float> result(bands);
-  std::fill_n(result.value.begin(), bands, value);
+Spectrum Constant(std::size_t bands, float value) {
+  Spectrum result(bands);
+  std::fill_n(result.values().begin(), bands, value);
   return result;
 }
 
@@ -75,7 +75,7 @@ TransmittanceTable::Point TransmittanceTable::PointOfTexel(std::size_t mu,
   return {h * kMetresPerKilometre, std::max(cosine, shared::HorizonCosine<double>(h, radius_km_))};
 }
 
-Bands<float> TransmittanceTable::Interpolate(double altitude_km, double mu) const {
+Spectrum TransmittanceTable::Interpolate(double altitude_km, double mu) const {
   const auto row = AxisPosition::FromUnit(
       shared::UnitFromAltitude<double>(altitude_km, top_km_, radius_km_), size_.altitudes);
   const auto column = AxisPosition::FromUnit(
@@ -84,7 +84,7 @@ Bands<float> TransmittanceTable::Interpolate(double altitude_km, double mu) cons
   const float* low = &texels_[(row.low * size_.mu + column.low) * bands];
   const float* high = low + size_.mu * bands;
   const auto mix = [](float a, float b, float t) { return a + (b - a) * t; };
-  Bands<float> result(bands);
+  Spectrum result(bands);
   for (std::size_t band = 0; band < bands; ++band) {
     result[band] = mix(mix(low[band], low[bands + band], column.fraction),
                        mix(high[band], high[bands + band], column.fraction), row.fraction);
@@ -92,7 +92,7 @@ Bands<float> TransmittanceTable::Interpolate(double altitude_km, double mu) cons
   return result;
 }
 
-Bands<float> TransmittanceTable::Lookup(double altitude_m, double mu) const {
+Spectrum TransmittanceTable::Lookup(double altitude_m, double mu) const {
   const std::size_t bands = medium_.wavelengths_nm.size();
   const RayExtent extent =
       ExtentOf({altitude_m, mu}, medium_.planet_radius_m, medium_.atmosphere_height_m);
@@ -104,7 +104,7 @@ Bands<float> TransmittanceTable::Lookup(double altitude_m, double mu) const {
   return Interpolate(top_km_, shared::ZenithCosineAlongRay<double>(h, mu, d, top_km_, radius_km_));
 }
 
-Bands<float> TransmittanceTable::LookupAlong(const ViewRay& ray) const {
+Spectrum TransmittanceTable::LookupAlong(const ViewRay& ray) const {
   const std::size_t bands = medium_.wavelengths_nm.size();
   const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   if (extent.begin_m == extent.end_m) return Constant(bands, 1.0F);
@@ -122,9 +122,9 @@ Bands<float> TransmittanceTable::LookupAlong(const ViewRay& ray) const {
   whole.length_m = std::numeric_limits<double>::infinity();
   const bool down =
       ExtentOf(whole, medium_.planet_radius_m, medium_.atmosphere_height_m).end == RayEnd::kGround;
-  const Bands<float> begin = at(extent.begin_m, down ? -1.0 : 1.0);
-  const Bands<float> end = at(extent.end_m, down ? -1.0 : 1.0);
-  Bands<float> result(bands);
+  const Spectrum begin = at(extent.begin_m, down ? -1.0 : 1.0);
+  const Spectrum end = at(extent.end_m, down ? -1.0 : 1.0);
+  Spectrum result(bands);
   for (std::size_t band = 0; band < bands; ++band) {
     const float whole_way = down ? end[band] : begin[band];
     const float beyond = down ? begin[band] : end[band];

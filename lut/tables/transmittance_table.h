@@ -53,11 +53,11 @@ class TransmittanceTable {
   ///
   /// Error at the default size, earth and bruneton2017, against the reference solution: below 4e-3
   /// everywhere (rays near the horizon through the aerosol), 3e-4 rms.
-  [[nodiscard]] Bands<float> Lookup(double altitude_m, double mu) const;
+  [[nodiscard]] Spectrum Lookup(double altitude_m, double mu) const;
 
   /// Returns the transmittance from the observer to the end of the ray: a quotient of two look-ups.
   /// Their error is divided by the transmittance from the end of the ray to space.
-  [[nodiscard]] Bands<float> LookupAlong(const ViewRay& ray) const;
+  [[nodiscard]] Spectrum LookupAlong(const ViewRay& ray) const;
 
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] const TransmittanceTableSize& size() const { return size_; }
@@ -75,7 +75,7 @@ class TransmittanceTable {
 
  private:
   /// Interpolates inside the shell, for a ray that does not hit the ground.
-  [[nodiscard]] Bands<float> Interpolate(double altitude_km, double mu) const;
+  [[nodiscard]] Spectrum Interpolate(double altitude_km, double mu) const;
 
   Medium medium_;
   TransmittanceTableSize size_;

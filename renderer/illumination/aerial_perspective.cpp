@@ -346,7 +346,7 @@ RaySamples<float> AerialPerspective::SampleWhole(const ViewRay& ray, const Sunli
 PolarisedLight AerialPerspective::Polarised(const RaySamples<float>& samples, const ViewRay& ray,
                                             const ScatteredOnce<float>& once,
                                             bool higher_orders) const {
-  PolarisedLight light{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
+  PolarisedLight light{Spectrum(air_.bands()), Spectrum(air_.bands())};
   if (!air_.medium().polarised) return light;
   light = PolarisedOnce(air_.medium(), once, ray);
   if (!higher_orders) return light;
@@ -367,8 +367,8 @@ AirAlongRay AerialPerspective::Sum(const SampledLight& light, const ViewRay& ray
   const auto multiple_scattering =
       nodes.higher_orders
           ? multiple_scattering_.InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpaque)
-          : Bands<float>(air_.bands());
-  AirAlongRay air{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
+          : Spectrum(air_.bands());
+  AirAlongRay air{Spectrum(air_.bands()), Spectrum(air_.bands())};
   const std::size_t last = samples.count - 1;
   for (std::size_t band = 0; band < air_.bands(); ++band) {
     air.inscatter[band] = std::max(direct[band], 0.0F) + multiple_scattering[band];

@@ -154,8 +154,8 @@ class SegmentAir {
 
 /// Light and transmittance of the air along a ray, per unit solar irradiance.
 struct AirAlongRay {
-  Bands<float> inscatter;      // [1/sr], all orders
-  Bands<float> transmittance;  // [1]
+  Spectrum inscatter;      // [1/sr], all orders
+  Spectrum transmittance;  // [1]
   /// Q and U of `inscatter` [1/sr], if requested.
   std::optional<PolarisedLight> polarised = std::nullopt;
 };

@@ -9,8 +9,8 @@ namespace alpenglow::renderer {
 
 DistantLight SunlightOf(const SunInSky& apparent, const Medium& medium) {
   DistantLight sun{LightSource::kSun, DirectionOf(apparent), apparent.angular_radius_rad(),
-                   BandLight(medium.solar_irradiance.size())};
-  for (std::size_t band = 0; band < sun.irradiance.count; ++band) {
+                   Spectrum(medium.solar_irradiance.size())};
+  for (std::size_t band = 0; band < sun.irradiance.size(); ++band) {
     sun.irradiance[band] = static_cast<float>(medium.solar_irradiance[band] /
                                               (apparent.distance_au * apparent.distance_au));
   }

@@ -37,7 +37,7 @@ struct DistantLight {
   LightSource body;
   LightDirection direction;  // of the visible centre of its disk
   double radius_rad;         // of the disk
-  BandLight irradiance;      // above the air, W m^-2 nm^-1
+  Spectrum irradiance;       // above the air, W m^-2 nm^-1
 };
 
 /// Returns the light of the sun in the frame east, north, up of the place that sees it.

@@ -15,9 +15,9 @@ namespace {
 
 const glm::dvec3 kUp(0.0, 0.0, 1.0);
 
-BandTexel TexelOf(const BandLight& light) {
+BandTexel TexelOf(const Spectrum& light) {
   BandTexel texel{};
-  std::copy_n(light.value.begin(), light.count, texel.begin());
+  std::ranges::copy(light.values(), texel.begin());
   return texel;
 }
 
@@ -49,7 +49,7 @@ Rays LobeRays(const Glossy& glossy) {
 /// Tabulates the rays of one surface.
 class MirrorTable {
  public:
-  MirrorTable(const OccludedSkyIrradiance& sky, const BandLight& level, double mu_s,
+  MirrorTable(const OccludedSkyIrradiance& sky, const Spectrum& level, double mu_s,
               std::array<double, GlossMirror::kAltitudes> altitudes_m)
       : sky_(sky), level_(level), mu_s_(mu_s), altitudes_m_(altitudes_m) {
     for (std::size_t i = 0; i < kHorizons; ++i)
@@ -82,12 +82,12 @@ class MirrorTable {
   void AddSky(const MirroredRays& rays, std::size_t texel) {
     for (const MirroredRay& ray : rays.All()) {
       for (std::size_t altitude = 0; altitude < altitudes_m_.size(); ++altitude) {
-        const BandLight sky = sky_.Radiance(altitudes_m_[altitude], mu_s_, ray.direction);
+        const Spectrum sky = sky_.Radiance(altitudes_m_[altitude], mu_s_, ray.direction);
         for (std::size_t i = 0; i < kHorizons; ++i) {
           const auto open = static_cast<float>(
               0.5 * ray.weight * (1.0 - GroundShare(ray.direction.z, ray.spread, horizons_[i])));
           BandTexel& into = texels_[(altitude * kHorizons + i) * kSide * kSide + texel];
-          for (std::size_t band = 0; band < sky.count; ++band)
+          for (std::size_t band = 0; band < sky.size(); ++band)
             into[band] += open * sky[band] / std::max(level_[band], 1e-30F);
         }
       }
@@ -105,7 +105,7 @@ class MirrorTable {
   }
 
   const OccludedSkyIrradiance& sky_;
-  const BandLight& level_;
+  const Spectrum& level_;
   double mu_s_;
   std::array<double, GlossMirror::kAltitudes> altitudes_m_;
   std::array<double, kHorizons> horizons_{};
@@ -114,7 +114,7 @@ class MirrorTable {
 
 }  // namespace
 
-BandLight LevelSky::Under(const MultipleScattering& multiple_scattering, double sun_elevation_rad) {
+Spectrum LevelSky::Under(const MultipleScattering& multiple_scattering, double sun_elevation_rad) {
   return multiple_scattering.SkyIrradiance(0.0, std::sin(std::max(sun_elevation_rad, kLowest_rad)));
 }
 
@@ -139,7 +139,7 @@ GlossMirror GlossMirror::Of(const OccludedSkyIrradiance& sky,
                             const glm::dvec3& to_light, double lower_altitude_m,
                             double higher_altitude_m) {
   const double mu_s = std::clamp(to_light.z, -1.0, 1.0);
-  const BandLight level = multiple_scattering.SkyIrradiance(0.0, mu_s);
+  const Spectrum level = multiple_scattering.SkyIrradiance(0.0, mu_s);
   const double flat = std::hypot(to_light.x, to_light.y);
   const glm::dvec3 sunward =
       flat > 1e-9 ? glm::dvec3(to_light.x, to_light.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);

@@ -46,8 +46,8 @@ struct LevelSky {
   /// Returns the table. The relative error between nodes is below 2e-3.
   [[nodiscard]] static std::vector<BandTexel> Of(const MultipleScattering& multiple_scattering);
   /// Returns the exact value.
-  [[nodiscard]] static BandLight Under(const MultipleScattering& multiple_scattering,
-                                       double sun_elevation_rad);
+  [[nodiscard]] static Spectrum Under(const MultipleScattering& multiple_scattering,
+                                      double sun_elevation_rad);
 };
 
 /// The light that a glossy surface mirrors, relative to LevelSky, in layers of kSide x kSide

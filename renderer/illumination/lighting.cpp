@@ -33,7 +33,7 @@ Lighting Lighting::EclipsedBy(const EclipsedDisk& disk,
   constexpr double kCorona = 1e-6;
   Lighting eclipsed = *this;
   eclipsed.eclipse = EclipsedSun{disk, source.irradiance};
-  for (std::size_t band = 0; band < source.irradiance.count; ++band) {
+  for (std::size_t band = 0; band < source.irradiance.size(); ++band) {
     const double left = std::max(UncoveredLight(disk, wavelengths_nm[band]), kCorona);
     eclipsed.source.irradiance[band] = static_cast<float>(left) * source.irradiance[band];
   }
@@ -59,18 +59,18 @@ Lighting Lighting::By(const DistantLight& light) const {
   return alone;
 }
 
-BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm) {
+Spectrum MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm) {
   const double phase_rad =
       std::acos(std::clamp(-glm::dot(moon.direction.seen, moon.to_sun), -1.0, 1.0));
   const double grey = MoonReflectance(phase_rad, 550.0);
-  BandLight colour(wavelengths_nm.size());
-  for (std::size_t band = 0; band < colour.count; ++band)
+  Spectrum colour(wavelengths_nm.size());
+  for (std::size_t band = 0; band < colour.size(); ++band)
     colour[band] = static_cast<float>(MoonReflectance(phase_rad, wavelengths_nm[band]) / grey);
   return colour;
 }
 
-DistantLight MoonlightOf(const MoonDisk& disk, const SkyBodies& bodies, const BandLight& colour,
-                         const BandLight& sun) {
+DistantLight MoonlightOf(const MoonDisk& disk, const SkyBodies& bodies, const Spectrum& colour,
+                         const Spectrum& sun) {
   const double share = MoonIrradiance(bodies.moon, bodies.sun.distance_au, 550.0);
   return {LightSource::kMoon, disk.direction, disk.radius_rad,
           static_cast<float>(share) * (colour * sun)};

@@ -36,7 +36,7 @@ namespace alpenglow::renderer {
 /// The sun partly covered by the moon at Lighting::moon.
 struct EclipsedSun {
   EclipsedDisk disk;
-  BandLight whole;  // irradiance without the moon
+  Spectrum whole;  // irradiance without the moon
 };
 
 /// Light in the air and on surfaces by one distant light, and what is visible beside it.
@@ -45,7 +45,7 @@ struct Lighting {
   MountainSurface surface;  // with its seasonal cover
   double sea_s = 0.0;       // time of the waves, see SeaTime
   std::optional<MoonDisk> moon = std::nullopt;  // visible disk
-  BandLight moon_colour = {};                   // reflectance relative to that at 550 nm
+  Spectrum moon_colour = {};                    // reflectance relative to that at 550 nm
   glm::dvec3 moon_turn{0.0};  // axis and angle [rad] of its motion while the shutter is open
   std::optional<EclipsedSun> eclipse = std::nullopt;  // `source` is then the uncovered part
   /// The moon, if its light may be visible beside the sun's.
@@ -59,7 +59,7 @@ struct Lighting {
   std::shared_ptr<const TerrainIrradiance> on_terrain = nullptr;
 
   /// Returns the irradiance of the sun above the air without the moon in front of it.
-  [[nodiscard]] const BandLight& WholeSun() const {
+  [[nodiscard]] const Spectrum& WholeSun() const {
     return eclipse ? eclipse->whole : source.irradiance;
   }
   /// Returns this lighting with the moon in front of the sun. Each band keeps the uncovered
@@ -83,7 +83,7 @@ struct Lighting {
                                   const Place& place, const Medium& medium, double wetness = 0.0);
 
 /// Returns the moon's reflectance at the phase of the disk, relative to that at 550 nm.
-[[nodiscard]] BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm);
+[[nodiscard]] Spectrum MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm);
 
 /// Returns the depression of the sun below an eye's horizontal [rad] at which it lights none of the
 /// air visible to the eye. The last visible air is at the top of the atmosphere, beyond the eye's
@@ -96,6 +96,6 @@ struct Lighting {
 /// @param disk  its direction is used.
 /// @param sun  irradiance of the sun there.
 [[nodiscard]] DistantLight MoonlightOf(const MoonDisk& disk, const SkyBodies& bodies,
-                                       const BandLight& colour, const BandLight& sun);
+                                       const Spectrum& colour, const Spectrum& sun);
 
 }  // namespace alpenglow::renderer

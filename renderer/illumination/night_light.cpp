@@ -17,15 +17,15 @@ namespace alpenglow::renderer {
 namespace {
 
 /// Returns a spectrum of half sodium, half LED light, with a total luminance of 1 cd/m^2.
-BandLight LampsOfUnitLuminance(const BandColour& colour) {
+Spectrum LampsOfUnitLuminance(const BandColour& colour) {
   constexpr double kSodium_k = 2050.0, kLed_k = 4000.0, kShare = 0.5;
   const std::vector<double>& wavelengths_nm = colour.wavelengths_nm();
-  BandLight sum(wavelengths_nm.size());
+  Spectrum sum(wavelengths_nm.size());
   for (const double temperature_k : {kSodium_k, kLed_k}) {
     std::vector<double> values;
     for (const double nm : wavelengths_nm) values.push_back(BlackBodyRadiance(nm, temperature_k));
     const double luminance = colour.Xyz(values)[1];
-    for (std::size_t band = 0; band < sum.count; ++band)
+    for (std::size_t band = 0; band < sum.size(); ++band)
       sum[band] += static_cast<float>(kShare * values[band] / luminance);
   }
   return sum;
@@ -46,8 +46,8 @@ glm::dvec3 Refracted(const glm::dvec3& enu, const RefractedView& view) {
 StarLight LightOf(const PointLight& point, const glm::dvec3& direction, const BandColour& colour) {
   const std::vector<double>& wavelengths_nm = colour.wavelengths_nm();
   const double temperature = TemperatureOf(point.colour_index);
-  BandLight spectrum(wavelengths_nm.size());
-  for (std::size_t band = 0; band < spectrum.count; ++band)
+  Spectrum spectrum(wavelengths_nm.size());
+  for (std::size_t band = 0; band < spectrum.size(); ++band)
     spectrum[band] = static_cast<float>(1e6 * BlackBodyRadiance(wavelengths_nm[band], temperature));
   const double of_spectrum = colour.Xyz(InDouble(spectrum))[1];
   const double lux = IlluminanceOf(point.magnitude);
@@ -62,14 +62,15 @@ glm::dvec3 After(const glm::dvec3& ecef, double seconds) {
 }
 
 /// Returns light of a spectrum, scaled to a luminance of 1 cd/m^2.
-template <typename Spectrum>
-BandLight OfUnitLuminance(const std::vector<double>& wavelengths_nm, const BandColour& colour,
-                          const Spectrum& spectrum) {
-  BandLight light(wavelengths_nm.size());
+/// @param shape  function from wavelength [nm] to relative radiance.
+template <typename Shape>
+Spectrum OfUnitLuminance(const std::vector<double>& wavelengths_nm, const BandColour& colour,
+                         const Shape& shape) {
+  Spectrum light(wavelengths_nm.size());
   std::vector<double> values;
-  for (const double wavelength : wavelengths_nm) values.push_back(spectrum(wavelength));
+  for (const double wavelength : wavelengths_nm) values.push_back(shape(wavelength));
   const double luminance = colour.Xyz(values)[1];
-  for (std::size_t band = 0; band < light.count; ++band)
+  for (std::size_t band = 0; band < light.size(); ++band)
     light[band] = static_cast<float>(values[band] / luminance);
   return light;
 }
@@ -98,15 +99,15 @@ double AirglowSpectrum(double wavelength_nm) {
 
 }  // namespace
 
-BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
-                  const BandColour& colour) {
-  if (!Scatters(air.medium())) return BandLight(air.bands());
+Spectrum Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
+                 const BandColour& colour) {
+  if (!Scatters(air.medium())) return Spectrum(air.bands());
   const double wanted = std::max(
       LuminanceOfSurfaceBrightness(zenith) - LuminanceOfSurfaceBrightness(kNaturalZenith), 0.0);
-  const BandLight lamps = LampsOfUnitLuminance(colour);
-  const BandLight left = air.TransmittanceToSpace(ground_m, 1.0);
-  BandLight seen(lamps.count);
-  for (std::size_t band = 0; band < lamps.count; ++band)
+  const Spectrum lamps = LampsOfUnitLuminance(colour);
+  const Spectrum left = air.TransmittanceToSpace(ground_m, 1.0);
+  Spectrum seen(lamps.size());
+  for (std::size_t band = 0; band < lamps.size(); ++band)
     seen[band] = (1.0F - left[band]) * lamps[band];
   return static_cast<float>(wanted / colour.Xyz(InDouble(seen))[1]) * lamps;
 }
@@ -145,27 +146,27 @@ std::vector<StarLight> StarLightsOver(const Place& eye, const UtcTime& instant,
 
 NightLight::NightLight(const NightSky& sky, const SingleScattering<float>& air,
                        const BandColour& colour, const glm::dvec3& up, double altitude_m,
-                       const std::optional<BandLight>& towns)
+                       const std::optional<Spectrum>& towns)
     : sky_(sky), up_(up), altitude_m_(altitude_m) {
   constexpr double kStars_k = 5000.0, kGround = 1.0 / 6.0;
   const auto& wavelengths_nm = air.medium().wavelengths_nm;
   airglow_ = OfUnitLuminance(wavelengths_nm, colour, AirglowSpectrum);
   starlight_ = OfUnitLuminance(wavelengths_nm, colour,
                                [](double nm) { return BlackBodyRadiance(nm, kStars_k); });
-  zodiacal_ = BandLight(wavelengths_nm.size());
-  for (std::size_t band = 0; band < zodiacal_.count; ++band)
+  zodiacal_ = Spectrum(wavelengths_nm.size());
+  for (std::size_t band = 0; band < zodiacal_.size(); ++band)
     zodiacal_[band] = static_cast<float>(SolarIrradiance(wavelengths_nm[band]));
   // Integrate over equal areas of the hemisphere's projection.
   constexpr int kRings = 8, kSectors = 16;
-  BandLight above(zodiacal_.count), left(zodiacal_.count), kept(zodiacal_.count);
+  Spectrum above(zodiacal_.size()), left(zodiacal_.size()), kept(zodiacal_.size());
   const glm::dvec3 east = glm::normalize(glm::cross(glm::dvec3(0.3, 1.0, 0.1), up));
   const glm::dvec3 north = glm::cross(up, east);
   for (int ring = 0; ring < kRings; ++ring) {
     const double sine = std::sqrt((ring + 0.5) / kRings), cosine = std::sqrt(1.0 - sine * sine);
-    const BandLight through = air.TransmittanceToSpace(std::max(altitude_m, 0.0), cosine);
+    const Spectrum through = air.TransmittanceToSpace(std::max(altitude_m, 0.0), cosine);
     for (int sector = 0; sector < kSectors; ++sector) {
       const double turn = 2.0 * kPi * (sector + 0.5) / kSectors;
-      const BandLight light =
+      const Spectrum light =
           Above(cosine * up + sine * (std::cos(turn) * east + std::sin(turn) * north));
       above = above + light;
       left = left + through * light;
@@ -175,21 +176,21 @@ NightLight::NightLight(const NightSky& sky, const SingleScattering<float>& air,
   constexpr auto kShare = static_cast<float>(1.0 / (kRings * kSectors));
   scattered_ = static_cast<float>(0.5 * (1.0 + kGround)) * (kShare * above);
   if (towns) scattered_ = scattered_ + *towns;
-  level_ = BandLight(above.count);
-  for (std::size_t band = 0; band < above.count; ++band) {
+  level_ = Spectrum(above.size());
+  for (std::size_t band = 0; band < above.size(); ++band) {
     const float hidden = 1.0F - kept[band] / static_cast<float>(kRings);
     level_[band] = static_cast<float>(kPi) * (kShare * left[band] + hidden * scattered_[band]);
   }
 }
 
-BandLight NightLight::Above(const glm::dvec3& direction) const {
+Spectrum NightLight::Above(const glm::dvec3& direction) const {
   const NightRadiance radiance = sky_.Towards(direction, up_, altitude_m_);
   return static_cast<float>(radiance.airglow_cd_per_m2) * airglow_ +
          static_cast<float>(radiance.zodiacal_per_irradiance) * zodiacal_ +
          static_cast<float>(radiance.starlight_cd_per_m2) * starlight_;
 }
 
-BandLight NightLight::OnSurface(double cos_up) const {
+Spectrum NightLight::OnSurface(double cos_up) const {
   return static_cast<float>(0.5 * (1.0 + cos_up)) * level_;
 }
 

@@ -47,13 +47,13 @@ namespace alpenglow::renderer {
 /// Returns J of light pollution [W m^-2 sr^-1 nm^-1]; 0 in air that does not scatter.
 /// @param zenith  [V magnitudes per square arcsecond]; J is 0 if it is darker than kNaturalZenith.
 /// @param ground_m  altitude of the place with this zenith, >= 0.
-[[nodiscard]] BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
-                                const BandColour& colour);
+[[nodiscard]] Spectrum Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
+                               const BandColour& colour);
 
 /// A star or planet at the top of the air.
 struct StarLight {
   glm::dvec3 direction;  // unit, refracted, in the frame of the picture
-  BandLight irradiance;  // W m^-2 nm^-1
+  Spectrum irradiance;   // W m^-2 nm^-1
   double lux = 0.0;      // the same, as illuminance
   /// Directions, like `direction`, at equal time steps while the shutter is open, the first one
   /// when it opens; empty: the light does not move.
@@ -98,24 +98,24 @@ class NightLight {
   /// @param towns  Skyglow; empty: none.
   NightLight(const NightSky& sky, const SingleScattering<float>& air, const BandColour& colour,
              const glm::dvec3& up, double altitude_m,
-             const std::optional<BandLight>& towns = std::nullopt);
+             const std::optional<Spectrum>& towns = std::nullopt);
 
   /// Returns the radiance from above the air, W m^-2 sr^-1 nm^-1.
-  [[nodiscard]] BandLight Above(const glm::dvec3& direction) const;
+  [[nodiscard]] Spectrum Above(const glm::dvec3& direction) const;
 
   /// J: the radiance of an infinitely long path through the air.
-  [[nodiscard]] const BandLight& scattered() const { return scattered_; }
+  [[nodiscard]] const Spectrum& scattered() const { return scattered_; }
 
   /// Returns the irradiance of the ground, W m^-2 nm^-1, assuming that the sky is uniform.
   /// @param cos_up  between the surface's normal and the vertical.
-  [[nodiscard]] BandLight OnSurface(double cos_up) const;
+  [[nodiscard]] Spectrum OnSurface(double cos_up) const;
 
  private:
   NightSky sky_;
   glm::dvec3 up_;
   double altitude_m_;
-  BandLight airglow_, zodiacal_, starlight_;  // per 1 cd/m^2, per 1/sr, per 1 cd/m^2
-  BandLight scattered_, level_;
+  Spectrum airglow_, zodiacal_, starlight_;  // per 1 cd/m^2, per 1/sr, per 1 cd/m^2
+  Spectrum scattered_, level_;
 };
 
 }  // namespace alpenglow::renderer

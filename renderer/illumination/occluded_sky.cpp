@@ -119,7 +119,7 @@ OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air,
     const auto irradiance = multiple_scattering.SkyIrradiance(
         lowest_m_ + level * (highest_m_ - lowest_m_),
         std::clamp(first_mu_s_ + static_cast<double>(i % kSuns) * mu_s_step_, -1.0, 1.0));
-    std::copy_n(irradiance.value.begin(), bands_, &level_irradiance_[i * stride_]);
+    std::copy_n(irradiance.values().begin(), bands_, &level_irradiance_[i * stride_]);
   }
   // Compute three skies; the levels between them are interpolated linearly.
   const double middle_m = 0.5 * (lowest_m_ + highest_m_);
@@ -159,7 +159,7 @@ std::vector<float> OccludedSkyIrradiance::TableAt(const SingleScattering<float>&
   std::vector<float> row(azimuths.size() * view.stride());
   std::vector<float> table(level_floats(), 0.0F);
   const double step = (1.0 - static_cast<double>(HorizonMap::kLowest)) / (kNodes - 1);
-  const Bands<float> level_plane = multiple_scattering.SkyIrradiance(altitude_m, mu_s);
+  const Spectrum level_plane = multiple_scattering.SkyIrradiance(altitude_m, mu_s);
   for (std::size_t node = kNodes - 1; node-- > 0;) {
     for (std::size_t azimuth = 0; azimuth < kHorizonAzimuths; ++azimuth) {
       const float* above = &table[(azimuth * kNodes + node + 1) * 2 * stride_];
@@ -195,7 +195,7 @@ std::size_t OccludedSkyIrradiance::Level(double altitude_m) const {
       std::lround(std::clamp(at, 0.0, static_cast<double>(kLevels - 1))));
 }
 
-Bands<float> OccludedSkyIrradiance::LevelIrradiance(double altitude_m, double mu_s) const {
+Spectrum OccludedSkyIrradiance::LevelIrradiance(double altitude_m, double mu_s) const {
   const auto tap = [](double at, std::size_t nodes) {
     const double clamped = std::clamp(at, 0.0, static_cast<double>(nodes - 1));
     const std::size_t node = std::min(static_cast<std::size_t>(clamped), nodes - 2);
@@ -207,7 +207,7 @@ Bands<float> OccludedSkyIrradiance::LevelIrradiance(double altitude_m, double mu
   const NodeTap sun = tap((mu_s - first_mu_s_) / mu_s_step_, kSuns);
   const float* low = &level_irradiance_[(level.node * kSuns + sun.node) * stride_];
   const float* high = low + kSuns * stride_;
-  Bands<float> irradiance(bands_);
+  Spectrum irradiance(bands_);
   for (std::size_t band = 0; band < bands_; ++band) {
     const float a = low[band] + sun.share * (low[stride_ + band] - low[band]);
     const float b = high[band] + sun.share * (high[stride_ + band] - high[band]);
@@ -218,9 +218,9 @@ Bands<float> OccludedSkyIrradiance::LevelIrradiance(double altitude_m, double mu
 
 // The integral between two sines is the difference of the integrals above them. The weights of all
 // sectors are computed first, then four bands at a time, so that both loops vectorise.
-Bands<float> OccludedSkyIrradiance::Irradiance(double altitude_m, double mu_s,
-                                               const SurfaceSectors& surface,
-                                               const Horizons& horizons) const {
+Spectrum OccludedSkyIrradiance::Irradiance(double altitude_m, double mu_s,
+                                           const SurfaceSectors& surface,
+                                           const Horizons& horizons) const {
   constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
   constexpr float kLast = static_cast<float>(kNodes - 1);
   std::array<float, kHorizonAzimuths> at, open;
@@ -255,7 +255,7 @@ Bands<float> OccludedSkyIrradiance::Irradiance(double altitude_m, double mu_s,
       add(i, std::clamp(to, 0.0F, kLast), -open[i]);
     }
   }
-  Bands<float> irradiance = LevelIrradiance(altitude_m, mu_s);
+  Spectrum irradiance = LevelIrradiance(altitude_m, mu_s);
   for (std::size_t band = 0; band < bands_; ++band) irradiance[band] *= std::max(sum[band], 0.0F);
   return irradiance;
 }
@@ -285,8 +285,8 @@ void OccludedSkyIrradiance::KeepRadiances() {
   }
 }
 
-Bands<float> OccludedSkyIrradiance::Radiance(double altitude_m, double mu_s,
-                                             const glm::dvec3& direction) const {
+Spectrum OccludedSkyIrradiance::Radiance(double altitude_m, double mu_s,
+                                         const glm::dvec3& direction) const {
   constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
   const float cell =
       std::clamp((static_cast<float>(direction.z) - HorizonMap::kLowest) * kScale - 0.5F, 0.0F,
@@ -301,7 +301,7 @@ Bands<float> OccludedSkyIrradiance::Radiance(double altitude_m, double mu_s,
   const std::size_t level = Level(altitude_m) * kHorizonAzimuths;
   const float* here = &radiance_[((level + sector) * kNodes + node) * stride_];
   const float* there = &radiance_[((level + next) * kNodes + node) * stride_];
-  Bands<float> radiance = LevelIrradiance(altitude_m, mu_s);
+  Spectrum radiance = LevelIrradiance(altitude_m, mu_s);
   for (std::size_t band = 0; band < bands_; ++band) {
     const float a = here[band] + up * (here[stride_ + band] - here[band]);
     const float b = there[band] + up * (there[stride_ + band] - there[band]);

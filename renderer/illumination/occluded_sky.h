@@ -63,15 +63,14 @@ class OccludedSkyIrradiance {
   /// Returns the irradiance per unit solar irradiance [1] from directions above the horizon, which
   /// is taken to be at least HorizonMap::kLowest.
   /// @param mu_s  zenith cosine of the sun at the place.
-  [[nodiscard]] Bands<float> Irradiance(double altitude_m, double mu_s,
-                                        const SurfaceSectors& surface,
-                                        const Horizons& horizons) const;
+  [[nodiscard]] Spectrum Irradiance(double altitude_m, double mu_s, const SurfaceSectors& surface,
+                                    const Horizons& horizons) const;
 
   /// Returns the radiance of the sky per unit solar irradiance [1/sr] in a direction (east, north,
   /// up at the place). It is linear between means over sectors and over steps of 0.011 of the
   /// elevation's sine; directions below the horizontal have the radiance of the horizontal.
-  [[nodiscard]] Bands<float> Radiance(double altitude_m, double mu_s,
-                                      const glm::dvec3& direction) const;
+  [[nodiscard]] Spectrum Radiance(double altitude_m, double mu_s,
+                                  const glm::dvec3& direction) const;
 
   [[nodiscard]] std::size_t bands() const { return bands_; }
 
@@ -96,7 +95,7 @@ class OccludedSkyIrradiance {
                                            const MultipleScattering& multiple_scattering,
                                            double altitude_m, const glm::dvec3& to_light) const;
   /// Returns the irradiance of a level plane.
-  [[nodiscard]] Bands<float> LevelIrradiance(double altitude_m, double mu_s) const;
+  [[nodiscard]] Spectrum LevelIrradiance(double altitude_m, double mu_s) const;
   void KeepRadiances();
   [[nodiscard]] std::size_t Level(double altitude_m) const;
   [[nodiscard]] std::size_t level_floats() const { return kHorizonAzimuths * kNodes * 2 * stride_; }

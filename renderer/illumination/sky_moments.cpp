@@ -43,7 +43,7 @@ SkyMoments::SkyMoments(const MultipleScattering& multiple_scattering, const glm:
   }
 }
 
-SkyMoments SkyMoments::WithoutGround(const BandLight& radiance) const {
+SkyMoments SkyMoments::WithoutGround(const Spectrum& radiance) const {
   SkyMoments less = *this;
   const Moments half = OverLowerHalf(degree_);
   for (std::vector<float>& values : less.values_) {
@@ -56,8 +56,8 @@ SkyMoments SkyMoments::WithoutGround(const BandLight& radiance) const {
   return less;
 }
 
-std::vector<BandLight> SkyMoments::Towards(const glm::dvec3& look,
-                                           const std::vector<double>& chi) const {
+std::vector<Spectrum> SkyMoments::Towards(const glm::dvec3& look,
+                                          const std::vector<double>& chi) const {
   const auto mu = static_cast<float>(std::clamp(glm::dot(look, up_), -1.0, 1.0));
   const auto nu = static_cast<float>(std::clamp(glm::dot(look, to_light_), -1.0, 1.0));
   Moments factor =
@@ -67,9 +67,9 @@ std::vector<BandLight> SkyMoments::Towards(const glm::dvec3& look,
       factor[MomentIndex(l, m)] *= static_cast<float>(chi[static_cast<std::size_t>(l)]);
     }
   }
-  std::vector<BandLight> light;
+  std::vector<Spectrum> light;
   for (const std::vector<float>& values : values_) {
-    BandLight& sum = light.emplace_back(bands_);
+    Spectrum& sum = light.emplace_back(bands_);
     for (std::size_t i = 0; i < MomentCount(degree_); ++i) {
       for (std::size_t band = 0; band < bands_; ++band) {
         sum[band] += factor[i] * values[i * bands_ + band];
@@ -80,7 +80,7 @@ std::vector<BandLight> SkyMoments::Towards(const glm::dvec3& look,
   return light;
 }
 
-BandLight SkyMoments::At(const std::vector<BandLight>& of_altitudes, double altitude_m) const {
+Spectrum SkyMoments::At(const std::vector<Spectrum>& of_altitudes, double altitude_m) const {
   const auto above = std::upper_bound(altitudes_m_.begin(), altitudes_m_.end(), altitude_m);
   if (above == altitudes_m_.begin()) return of_altitudes.front();
   if (above == altitudes_m_.end()) return of_altitudes.back();

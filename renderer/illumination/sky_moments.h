@@ -26,16 +26,16 @@ class SkyMoments {
   [[nodiscard]] double mu_s() const { return mu_s_; }
 
   /// Returns these moments without uniform light from below, `radiance` at all altitudes.
-  [[nodiscard]] SkyMoments WithoutGround(const BandLight& radiance) const;
+  [[nodiscard]] SkyMoments WithoutGround(const Spectrum& radiance) const;
 
   /// Returns the light that a phase function of these Legendre coefficients scatters into an eye
   /// that looks along `look`, at each of the altitudes [1/sr]. With all coefficients 1, it is the
   /// sky's radiance from this direction.
-  [[nodiscard]] std::vector<BandLight> Towards(const glm::dvec3& look,
-                                               const std::vector<double>& chi) const;
+  [[nodiscard]] std::vector<Spectrum> Towards(const glm::dvec3& look,
+                                              const std::vector<double>& chi) const;
 
   /// Interpolates linearly between the altitudes, and clamps to the first and last.
-  [[nodiscard]] BandLight At(const std::vector<BandLight>& of_altitudes, double altitude_m) const;
+  [[nodiscard]] Spectrum At(const std::vector<Spectrum>& of_altitudes, double altitude_m) const;
 
  private:
   glm::dvec3 up_, to_light_;

@@ -187,17 +187,17 @@ TerrainInterreflection::TerrainInterreflection(const SlopeViews& views, const Me
   for (std::size_t azimuth = 0; azimuth < kHorizonAzimuths; ++azimuth) {
     constexpr double kOverHorizon = 0.02;
     const double angle = HorizonAzimuth(azimuth);
-    const BandLight radiance =
+    const Spectrum radiance =
         sky.Radiance(0.0, mu_s, {std::cos(angle), std::sin(angle), kOverHorizon});
-    std::copy_n(radiance.value.begin(), bands_, &air[azimuth * stride_]);
+    std::copy_n(radiance.values().begin(), bands_, &air[azimuth * stride_]);
   }
   std::vector<float> sent(views.places().size() * stride_, 0.0F);
   tbb::parallel_for(0, views.heights().rows, [&](int row) {
     for (int column = 0; column < views.heights().columns; ++column) {
       if (views.heights().at(column, row) <= HeightRaster::kNothing) continue;
       const std::size_t node = views.heights().index(column, row);
-      const BandLight radiance = outgoing(views.places()[node]);
-      std::copy_n(radiance.value.begin(), bands_, &sent[node * stride_]);
+      const Spectrum radiance = outgoing(views.places()[node]);
+      std::copy_n(radiance.values().begin(), bands_, &sent[node * stride_]);
     }
   });
   Gather(sent, through, air);
@@ -229,8 +229,8 @@ void TerrainInterreflection::Gather(const std::vector<float>& sent,
   });
 }
 
-BandLight TerrainInterreflection::Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
-                                             const Horizons& horizons) const {
+Spectrum TerrainInterreflection::Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
+                                            const Horizons& horizons) const {
   const Neighbours around(*this, point);
   Horizons scale = GroundShares(surface, horizons);
   Horizons weight{};
@@ -253,15 +253,15 @@ BandLight TerrainInterreflection::Irradiance(const glm::dvec3& point, const Surf
       }
     }
   }
-  BandLight irradiance(bands_);
-  std::copy_n(sum.begin(), bands_, irradiance.value.begin());
+  Spectrum irradiance(bands_);
+  std::copy_n(sum.begin(), bands_, irradiance.values().begin());
   return irradiance;
 }
 
-BandLight TerrainInterreflection::Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
-                                           double horizon, const BandLight& beyond) const {
+Spectrum TerrainInterreflection::Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
+                                          double horizon, const Spectrum& beyond) const {
   const Neighbours around(*this, point);
-  BandLight radiance(bands_);
+  Spectrum radiance(bands_);
   float weight = 0.0F;
   const auto add = [&](std::size_t direction, float share) {
     for (std::size_t k = 0; k < 4; ++k) {

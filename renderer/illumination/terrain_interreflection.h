@@ -77,7 +77,7 @@ class TerrainInterreflection {
  public:
   /// Returns the light from sun and sky that a place reflects, as radiance per unit solar
   /// irradiance [1/sr], the same in all directions.
-  using Outgoing = std::function<BandLight(const SlopePlace& place)>;
+  using Outgoing = std::function<Spectrum(const SlopePlace& place)>;
 
   /// The result does not depend on the number of threads.
   /// @param mu_s  zenith cosine of the sun at the frame's origin.
@@ -85,13 +85,13 @@ class TerrainInterreflection {
                          const OccludedSkyIrradiance& sky, double mu_s);
 
   /// Returns the irradiance [1] from other ground, below the horizons.
-  [[nodiscard]] BandLight Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
-                                     const Horizons& horizons) const;
+  [[nodiscard]] Spectrum Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
+                                    const Horizons& horizons) const;
   /// Returns the radiance [1/sr] of the ground that is visible in a horizontal direction.
   /// @param horizon  the sine of its elevation there.
   /// @param beyond  radiance that replaces ground which is almost absent from the coarse grid.
-  [[nodiscard]] BandLight Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
-                                   double horizon, const BandLight& beyond) const;
+  [[nodiscard]] Spectrum Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
+                                  double horizon, const Spectrum& beyond) const;
 
   [[nodiscard]] const SlopeViews& views() const { return views_; }
   /// SlopeViews::Weight times radiance: [node][azimuth][band], with the number of bands rounded up

@@ -69,11 +69,11 @@ void TerrainIrradiance::AddSlopes(const Medium& medium,
 TerrainIrradiance::OnSlope TerrainIrradiance::On(const SlopePoint& at) const {
   const SurfaceSectors surface = SectorsOf(AtPlace(at.normal, at.up));
   const Horizons horizons = horizons_->map().At(at.point);
-  const BandLight sky = sky_.Irradiance(at.altitude_m, at.mu_s, surface, horizons);
-  return {sky, slopes_ ? slopes_->Irradiance(at.point, surface, horizons) : BandLight(sky.count)};
+  const Spectrum sky = sky_.Irradiance(at.altitude_m, at.mu_s, surface, horizons);
+  return {sky, slopes_ ? slopes_->Irradiance(at.point, surface, horizons) : Spectrum(sky.size())};
 }
 
-BandLight TerrainIrradiance::SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const {
+Spectrum TerrainIrradiance::SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const {
   return sky_.Radiance(at.altitude_m, at.mu_s, AtPlace(direction, at.up));
 }
 
@@ -87,16 +87,16 @@ double GroundShare(double sine, const Spread& spread, double horizon) {
   return within + spread.lifted * (at_horizontal - within);
 }
 
-BandLight TerrainIrradiance::Radiance(const SlopePoint& at, const glm::dvec3& direction,
-                                      const Spread& spread) const {
+Spectrum TerrainIrradiance::Radiance(const SlopePoint& at, const glm::dvec3& direction,
+                                     const Spread& spread) const {
   const glm::dvec3 here = AtPlace(direction, at.up);
-  const BandLight sky = sky_.Radiance(at.altitude_m, at.mu_s, here);
+  const Spectrum sky = sky_.Radiance(at.altitude_m, at.mu_s, here);
   if (!slopes_) return sky;
   const BetweenAzimuths azimuth(std::atan2(here.y, here.x));
   const double horizon = azimuth.Mean(horizons_->map().At(at.point));
   const auto ground = static_cast<float>(GroundShare(here.z, spread, horizon));
   if (ground <= 0.0F) return sky;
-  const BandLight over_it =
+  const Spectrum over_it =
       sky_.Radiance(at.altitude_m, at.mu_s, glm::dvec3(here.x, here.y, std::max(here.z, horizon)));
   return (1.0F - ground) * sky + ground * slopes_->Radiance(at.point, azimuth, horizon, over_it);
 }

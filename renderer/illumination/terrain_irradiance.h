@@ -93,23 +93,23 @@ class TerrainIrradiance {
 
   /// Irradiance per unit solar irradiance [1].
   struct OnSlope {
-    BandLight sky, slopes;
+    Spectrum sky, slopes;
   };
   /// Returns the irradiance from sky and slopes, separately. Needs horizons.
   [[nodiscard]] OnSlope On(const SlopePoint& at) const;
   /// Returns the irradiance from sky and slopes, per unit solar irradiance [1]. Needs horizons.
-  [[nodiscard]] BandLight Irradiance(const SlopePoint& at) const {
+  [[nodiscard]] Spectrum Irradiance(const SlopePoint& at) const {
     const OnSlope on = On(at);
     return on.sky + on.slopes;
   }
 
   /// Returns the radiance [1/sr] of the sky in a direction, without occlusion.
-  [[nodiscard]] BandLight SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const;
+  [[nodiscard]] Spectrum SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const;
   /// Returns the radiance [1/sr] in a direction. Ground contributes according to the fraction of
   /// the direction's spread that is below the horizon, the sky contributes the rest. Needs
   /// horizons.
-  [[nodiscard]] BandLight Radiance(const SlopePoint& at, const glm::dvec3& direction,
-                                   const Spread& spread = {}) const;
+  [[nodiscard]] Spectrum Radiance(const SlopePoint& at, const glm::dvec3& direction,
+                                  const Spread& spread = {}) const;
 
  private:
   std::shared_ptr<const TerrainHorizons> horizons_;

@@ -29,8 +29,8 @@ struct LampLight::State {
         eye{{0.0, 0.0, ground.eye_height_m}, std::nullopt},
         tree(PlacedLampsOf(scene, stage, medium, colour), eye, stage) {}
 
-  [[nodiscard]] Bands<float> InAir(const LampNodes& lamps, const LampRayEnd& ray,
-                                   double pixel_angle_rad, int nodes) const;
+  [[nodiscard]] Spectrum InAir(const LampNodes& lamps, const LampRayEnd& ray,
+                               double pixel_angle_rad, int nodes) const;
   [[nodiscard]] LampTile TileAt(const MovingCamera& camera, const PixelBox& box,
                                 const LampSettings& settings, const RayTrace& trace) const;
   /// Returns the lamps visible in a tile.
@@ -70,23 +70,23 @@ LampLight::SceneLamp LampLight::At(std::uint32_t number) const {
   return {placed.lamp, placed.intensity, placed.candela};
 }
 
-Bands<double> LampLight::DepthTo(std::uint32_t number, const glm::dvec3& point) const {
+SpectrumOf<double> LampLight::DepthTo(std::uint32_t number, const glm::dvec3& point) const {
   const PlacedLamp& placed = state_->tree.Light(number);
-  Bands<double> depth = TransmittanceBetween(placed.air, placed.lamp.position_m, point);
+  SpectrumOf<double> depth = TransmittanceBetween(placed.air, placed.lamp.position_m, point);
   const bool is_lit = state_->stage.Sees(placed.lamp.position_m, point);
-  for (std::size_t band = 0; band < depth.count; ++band) {
+  for (std::size_t band = 0; band < depth.size(); ++band) {
     depth[band] = is_lit ? -std::log(depth[band]) : std::numeric_limits<double>::infinity();
   }
   return depth;
 }
 
-Bands<float> LampLight::LayerTransmittance(const glm::dvec3& direction, double length_m) const {
+Spectrum LampLight::LayerTransmittance(const glm::dvec3& direction, double length_m) const {
   return state_->stage.LayerTransmittance(state_->eye.at, direction, length_m);
 }
 
-Bands<float> LampLight::State::InAir(const LampNodes& lamps, const LampRayEnd& ray,
-                                     double pixel_angle_rad, int nodes) const {
-  Bands<float> sum(stage.bands());
+Spectrum LampLight::State::InAir(const LampNodes& lamps, const LampRayEnd& ray,
+                                 double pixel_angle_rad, int nodes) const {
+  Spectrum sum(stage.bands());
   for (const std::uint32_t index : lamps) {
     const PlacedLamp& placed = tree.Light(index);
     const LampAlongRay along = AlongRay(placed, ray.direction, pixel_angle_rad);
@@ -100,15 +100,15 @@ Bands<float> LampLight::State::InAir(const LampNodes& lamps, const LampRayEnd& r
   return sum;
 }
 
-Bands<float> LampLight::InAir(const LampNodes& lamps, const LampRayEnd& ray, double pixel_angle_rad,
-                              int nodes) const {
+Spectrum LampLight::InAir(const LampNodes& lamps, const LampRayEnd& ray, double pixel_angle_rad,
+                          int nodes) const {
   return state_->InAir(lamps, ray, pixel_angle_rad, nodes);
 }
 
-Bands<float> LampLight::InAir(const LampPlan& plan, int x, int y, const LampRayEnd& ray,
-                              double pixel_angle_rad, int nodes) const {
+Spectrum LampLight::InAir(const LampPlan& plan, int x, int y, const LampRayEnd& ray,
+                          double pixel_angle_rad, int nodes) const {
   const LampTile& tile = plan.At(x, y);
-  Bands<float> sum = InAir(tile.near_air, ray, pixel_angle_rad, nodes);
+  Spectrum sum = InAir(tile.near_air, ray, pixel_angle_rad, nodes);
   if (tile.far_air.empty()) return sum;
   const double u = (x % LampPlan::kTile + 0.5) / LampPlan::kSpacing;
   const double v = (y % LampPlan::kTile + 0.5) / LampPlan::kSpacing;
@@ -127,20 +127,20 @@ Bands<float> LampLight::InAir(const LampPlan& plan, int x, int y, const LampRayE
             !std::isinf(length) && !std::isinf(ray.length_m));
   });
   if (!smooth) {
-    const Bands<float> far = InAir(tile.far_air, ray, pixel_angle_rad, nodes);
-    for (std::size_t band = 0; band < sum.count; ++band) sum[band] += far[band];
+    const Spectrum far = InAir(tile.far_air, ray, pixel_angle_rad, nodes);
+    for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += far[band];
     return sum;
   }
   for (std::size_t k = 0; k < at.size(); ++k) {
-    for (std::size_t band = 0; band < sum.count; ++band) {
+    for (std::size_t band = 0; band < sum.size(); ++band) {
       sum[band] += static_cast<float>(weight[k]) * tile.lattice[at[k]][band];
     }
   }
   return sum;
 }
 
-Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) const {
-  Bands<float> sum(state_->stage.bands());
+Spectrum LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) const {
+  Spectrum sum(state_->stage.bands());
   for (const std::uint32_t index : lamps) {
     const PlacedLamp& placed = state_->tree.Light(index);
     const glm::dvec3 to_lamp = placed.lamp.position_m - at.point;
@@ -162,20 +162,20 @@ Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) co
   return sum;
 }
 
-Bands<float> LampLight::Seen(const LampNodes& lamps, const CameraRay& ray, double pixel_angle_rad,
-                             const std::function<Bands<float>(double)>& left) const {
-  Bands<float> sum(state_->stage.bands());
+Spectrum LampLight::Seen(const LampNodes& lamps, const CameraRay& ray, double pixel_angle_rad,
+                         const std::function<Spectrum(double)>& left) const {
+  Spectrum sum(state_->stage.bands());
   for (const std::uint32_t index : lamps) {
     const PlacedLamp& placed = state_->tree.Light(index);
     if (glm::length(placed.lamp.position_m - ray.eye) <= placed.lamp.radius_m) {
-      const Bands<float> around = SeenFromWithin(placed, ray);
+      const Spectrum around = SeenFromWithin(placed, ray);
       sum = sum + (left ? left(placed.lamp.radius_m) * around : around);
       continue;
     }
     const double share = SeenPerSr(placed, state_->stage, state_->eye, ray, pixel_angle_rad) /
                          (placed.distance_m * placed.distance_m);
     if (share == 0.0) continue;
-    Bands<float> arriving = placed.towards_eye;
+    Spectrum arriving = placed.towards_eye;
     if (left) arriving = left(placed.distance_m) * arriving;
     sum = sum + static_cast<float>(share) * arriving;
   }

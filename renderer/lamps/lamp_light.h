@@ -50,7 +50,7 @@ struct LampTile {
   LampNodes surface;   // light on surfaces
   LampNodes seen;      // lamps visible in the tile
   /// Light of far_air, at (x0 + 4 i, y0 + 4 j); empty if there are no such nodes.
-  std::vector<Bands<float>> lattice;
+  std::vector<Spectrum> lattice;
   std::vector<double> lattice_length_m;  // of the rays there; NaN where terrain shades lamps
 };
 
@@ -102,39 +102,38 @@ class LampLight {
                                  const LampSettings& settings, const RayTrace& trace) const;
 
   /// Returns the transmittance of the scene's layers over a distance along a ray.
-  [[nodiscard]] Bands<float> LayerTransmittance(const glm::dvec3& direction, double length_m) const;
+  [[nodiscard]] Spectrum LayerTransmittance(const glm::dvec3& direction, double length_m) const;
 
   /// Returns the radiance that the air in front of the end of a ray through pixel (x, y) scatters
   /// from lamps [W m^-2 sr^-1 nm^-1]. If a lamp is closer to the ray than the width of a pixel, it
   /// is the mean over the pixel.
-  [[nodiscard]] Bands<float> InAir(const LampPlan& plan, int x, int y, const LampRayEnd& ray,
-                                   double pixel_angle_rad, int nodes) const;
+  [[nodiscard]] Spectrum InAir(const LampPlan& plan, int x, int y, const LampRayEnd& ray,
+                               double pixel_angle_rad, int nodes) const;
 
   /// Returns the radiance in the air from the given nodes, without a plan.
-  [[nodiscard]] Bands<float> InAir(const LampNodes& lamps, const LampRayEnd& ray,
-                                   double pixel_angle_rad, int nodes) const;
+  [[nodiscard]] Spectrum InAir(const LampNodes& lamps, const LampRayEnd& ray,
+                               double pixel_angle_rad, int nodes) const;
 
   /// Returns the irradiance of a surface [W m^-2 nm^-1].
-  [[nodiscard]] Bands<float> OnSurface(const LampNodes& lamps, const LitPoint& at) const;
+  [[nodiscard]] Spectrum OnSurface(const LampNodes& lamps, const LitPoint& at) const;
 
   /// Returns the radiance of the lamps themselves. A lamp smaller than a pixel is drawn as a soft
   /// disk of a pixel's size with the same total light. A lens spreads it over the shape of its
   /// iris, except where terrain hides it.
   /// @param left  transmittance over a distance due to media other than air and layers; null: 1.
-  [[nodiscard]] Bands<float> Seen(const LampNodes& lamps, const CameraRay& ray,
-                                  double pixel_angle_rad,
-                                  const std::function<Bands<float>(double)>& left = nullptr) const;
+  [[nodiscard]] Spectrum Seen(const LampNodes& lamps, const CameraRay& ray, double pixel_angle_rad,
+                              const std::function<Spectrum(double)>& left = nullptr) const;
 
   /// One of the scene's lamps, by its number in All().
   struct SceneLamp {
     const Lamp& lamp;
-    const Bands<float>& intensity;  // W sr^-1 nm^-1 in its brightest direction
+    const Spectrum& intensity;  // W sr^-1 nm^-1 in its brightest direction
     double candela;
   };
   [[nodiscard]] SceneLamp At(std::uint32_t number) const;
   /// Returns the optical depth of air and layers between a lamp and a point; infinite if terrain hides
   /// the lamp.
-  [[nodiscard]] Bands<double> DepthTo(std::uint32_t number, const glm::dvec3& point) const;
+  [[nodiscard]] SpectrumOf<double> DepthTo(std::uint32_t number, const glm::dvec3& point) const;
 
   /// Returns unit directions from the eye to the scene's lamps.
   [[nodiscard]] std::vector<glm::dvec3> Directions() const;

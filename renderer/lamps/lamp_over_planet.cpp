@@ -31,8 +31,8 @@ class RayOverPlanet {
     ALPENGLOW_ENSURE(at.layers.size(), <=, kMostLampLayers);
   }
 
-  [[nodiscard]] Bands<double> Light() const {
-    Bands<double> sum(at_.layers.front().scattering_per_m.count);
+  [[nodiscard]] SpectrumOf<double> Light() const {
+    SpectrumOf<double> sum(at_.layers.front().scattering_per_m.size());
     const double end = End(), begin = Dawn(end);
     const std::vector<double> cuts = Cuts(begin, end);
     const GaussRule& rule = GaussLegendre(3);
@@ -159,7 +159,7 @@ class RayOverPlanet {
 
   // Adds the light that a piece of the ray scatters, dimmed by the air.
   void Scatter(double t, const LayerDensities& here, LayerColumns column, double length_m,
-               Bands<double>& sum) const {
+               SpectrumOf<double>& sum) const {
     const glm::dvec3 way = t * direction_ - at_.to_lamp_m;
     const double far = std::max(glm::length(way), kNearest_m);
     AddColumns({at_.to_lamp_m, at_lamp_}, {t * direction_, here}, column);
@@ -169,7 +169,7 @@ class RayOverPlanet {
       scattered[k] =
           from_lamp * here.value[k] * Phase(at_.layers[k].phase, -glm::dot(way, direction_) / far);
     }
-    for (std::size_t band = 0; band < sum.count; ++band) {
+    for (std::size_t band = 0; band < sum.size(); ++band) {
       double depth = 0.0, source = 0.0;
       for (std::size_t k = 0; k < at_.layers.size(); ++k) {
         depth += at_.layers[k].extinction_per_m[band] * column[k];
@@ -187,7 +187,7 @@ class RayOverPlanet {
 
 }  // namespace
 
-Bands<double> AirlightOverPlanet(const LampOverPlanet& at, const glm::dvec3& direction) {
+SpectrumOf<double> AirlightOverPlanet(const LampOverPlanet& at, const glm::dvec3& direction) {
   return RayOverPlanet(at, direction).Light();
 }
 

@@ -27,7 +27,7 @@ struct LampOverPlanet {
 
 /// Returns the radiance that arrives at the point from a direction [sr^-1 m^-2], in every band.
 /// @param direction  unit.
-[[nodiscard]] Bands<double> AirlightOverPlanet(const LampOverPlanet& at,
-                                               const glm::dvec3& direction);
+[[nodiscard]] SpectrumOf<double> AirlightOverPlanet(const LampOverPlanet& at,
+                                                    const glm::dvec3& direction);
 
 }  // namespace alpenglow::renderer

@@ -15,8 +15,8 @@
 namespace alpenglow::renderer {
 namespace {
 
-Bands<double> ScaledBands(const std::vector<double>& values, double scale) {
-  Bands<double> bands(values.size());
+SpectrumOf<double> ScaledBands(const std::vector<double>& values, double scale) {
+  SpectrumOf<double> bands(values.size());
   for (std::size_t band = 0; band < values.size(); ++band) bands[band] = scale * values[band];
   return bands;
 }
@@ -132,11 +132,11 @@ LampAir LampStage::AirAround(const glm::dvec3& middle) const {
   return air;
 }
 
-Bands<float> LampStage::LayerTransmittance(const glm::dvec3& from, const glm::dvec3& direction,
-                                           double length_m) const {
+Spectrum LampStage::LayerTransmittance(const glm::dvec3& from, const glm::dvec3& direction,
+                                       double length_m) const {
   // A layer ends where it is 50 scale heights thin; a homogeneous layer has no end.
   const double length = std::isinf(length_m) ? 1e6 : length_m;
-  Bands<double> depth(bands_);
+  SpectrumOf<double> depth(bands_);
   for (const LampLayer& layer : std::span(layers_).subspan(kAirLayers)) {
     if (layer.extinction_per_m[0] <= 0.0) continue;
     const double column =
@@ -144,7 +144,7 @@ Bands<float> LampStage::LayerTransmittance(const glm::dvec3& from, const glm::dv
     for (std::size_t band = 0; band < bands_; ++band)
       depth[band] += layer.extinction_per_m[band] * column;
   }
-  Bands<float> left(bands_);
+  Spectrum left(bands_);
   for (std::size_t band = 0; band < bands_; ++band)
     left[band] = static_cast<float>(std::exp(-depth[band]));
   return left;

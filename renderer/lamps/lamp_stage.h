@@ -49,8 +49,8 @@ class LampStage {
   /// Returns the layers above the plane that touches the sphere below a point.
   [[nodiscard]] LampAir AirAround(const glm::dvec3& middle) const;
   /// Returns the transmittance of the layers of the scene alone.
-  [[nodiscard]] Bands<float> LayerTransmittance(const glm::dvec3& from, const glm::dvec3& direction,
-                                                double length_m) const;
+  [[nodiscard]] Spectrum LayerTransmittance(const glm::dvec3& from, const glm::dvec3& direction,
+                                            double length_m) const;
 
  private:
   /// Returns whether the planet lies between two points. Where terrain covers the planet, only

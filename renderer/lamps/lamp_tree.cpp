@@ -119,7 +119,7 @@ LampAirlightIrradiance::LampAirlightIrradiance(const std::vector<LampLayer>& lay
       ground_altitude_m_(ground_altitude_m),
       lowest_m_(std::min(ground_altitude_m, 0.0)),
       lights_(static_cast<std::size_t>(kDistances * kElevations) *
-              layers.front().scattering_per_m.count) {
+              layers.front().scattering_per_m.size()) {
   ALPENGLOW_ENSURE(ground_altitude_m, <=, lamp_altitude_m);
   air_.layers = layers;
   tbb::parallel_for(0, kDistances * kElevations, [&](int entry) {
@@ -169,8 +169,8 @@ glm::dvec3 LampAirlightIrradiance::ToLamp(double distance_m, double rise) const 
   return distance_m * glm::dvec3(std::sqrt(1.0 - sine * sine), 0.0, sine);
 }
 
-Bands<double> LampAirlightIrradiance::RadianceAt(const LampOverPlanet& at,
-                                                 const glm::dvec3& direction) const {
+SpectrumOf<double> LampAirlightIrradiance::RadianceAt(const LampOverPlanet& at,
+                                                      const glm::dvec3& direction) const {
   constexpr int kNodes = 8;
   constexpr double kFar_m = 20e3;
   const double distance_m = glm::length(at.to_lamp_m);
@@ -185,7 +185,7 @@ Bands<double> LampAirlightIrradiance::RadianceAt(const LampOverPlanet& at,
     segment.end_m =
         std::min(segment.end_m, (segment.origin_m.z - at.ground_altitude_m) / -direction.z);
   }
-  if (!(segment.end_m > 0.0)) return Bands<double>(air_.bands());
+  if (!(segment.end_m > 0.0)) return SpectrumOf<double>(air_.bands());
   return Airlight(air_, lamp, segment, kNodes);
 }
 
@@ -203,7 +203,7 @@ std::vector<LampAirlightIrradiance::Light> LampAirlightIrradiance::LightAt(doubl
     const glm::dvec3 direction =
         std::cos(around.alpha) * towards +
         std::sin(around.alpha) * (std::cos(around.turn) * lift + std::sin(around.turn) * side);
-    const Bands<double> radiance = RadianceAt(at, direction);
+    const SpectrumOf<double> radiance = RadianceAt(at, direction);
     const Moments harmonics =
         SphericalHarmonics(kDegree, static_cast<float>(std::cos(around.alpha)),
                            static_cast<float>(std::cos(around.turn)));
@@ -229,8 +229,8 @@ std::vector<LampAirlightIrradiance::Light> LampAirlightIrradiance::LightAt(doubl
   return lights;
 }
 
-Bands<double> LampAirlightIrradiance::On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
-                                         const glm::dvec3& up) const {
+SpectrumOf<double> LampAirlightIrradiance::On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
+                                              const glm::dvec3& up) const {
   const double length = std::max(glm::length(to_lamp), 1e-6);
   const double distance = std::max(length, kNearest_m);
   const glm::dvec3 towards = to_lamp / length;
@@ -245,15 +245,15 @@ Bands<double> LampAirlightIrradiance::On(const glm::dvec3& to_lamp, const glm::d
   const double near = DistanceNumber(low), step = DistanceNumber(low + 1) - near;
   const double share = std::min((distance - near) / step, 1.0);
   const double beyond = std::max(distance - kFarthest_m, 0.0) / step;
-  Bands<double> irradiance(air_.bands());
-  for (std::size_t band = 0; band < irradiance.count; ++band) {
+  SpectrumOf<double> irradiance(air_.bands());
+  for (std::size_t band = 0; band < irradiance.size(); ++band) {
     std::array<double, 2> log_mean{};
     double facing = 0.0;
     for (const int i : {0, 1}) {
       for (const int j : {0, 1}) {
         const double weight = j == 0 ? 1.0 - elevation.share : elevation.share;
         const auto entry = static_cast<std::size_t>((low + i) * kElevations + elevation.low + j);
-        const Light& light = lights_[entry * irradiance.count + band];
+        const Light& light = lights_[entry * irradiance.size() + band];
         log_mean[static_cast<std::size_t>(i)] += weight * light.log_mean;
         facing += (i == 0 ? 1.0 - share : share) * weight *
                   (Facing(light.lobe, harmonics) + levelness * light.level);
@@ -317,7 +317,7 @@ std::uint32_t LampTree::Join(LampNodes members, const LampEye& eye, const LampSt
 
 LampNode& LampTree::AddSum(const LampNodes& members, const LampEye& eye, const LampStage& stage) {
   PlacedLamp sum;
-  sum.intensity = Bands<float>(stage.bands());
+  sum.intensity = Spectrum(stage.bands());
   glm::dvec3 centre(0.0);
   for (const std::uint32_t i : members) {
     const PlacedLamp& light = Light(i);

@@ -63,8 +63,8 @@ class LampAirlightIrradiance {
   /// relative to the irradiance of the normal with the largest one, is below 18 %, rms 5 %.
   /// @param to_lamp  from the surface [m]; nearer than kNearest_m, the light is that there.
   /// @param normal, up  unit.
-  [[nodiscard]] Bands<double> On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
-                                 const glm::dvec3& up) const;
+  [[nodiscard]] SpectrumOf<double> On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
+                                      const glm::dvec3& up) const;
 
  private:
   /// Table entry for one place and band: the logarithm of moment 00 times the distance, and all
@@ -83,8 +83,8 @@ class LampAirlightIrradiance {
   void ExtrapolateBelowGround(int distance_number);
 
   /// Returns the radiance at a point from a direction; z is the point's vertical.
-  [[nodiscard]] Bands<double> RadianceAt(const LampOverPlanet& at,
-                                         const glm::dvec3& direction) const;
+  [[nodiscard]] SpectrumOf<double> RadianceAt(const LampOverPlanet& at,
+                                              const glm::dvec3& direction) const;
 
   LampAir air_;
   double planet_radius_m_, lamp_altitude_m_, ground_altitude_m_, lowest_m_;

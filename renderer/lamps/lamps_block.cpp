@@ -40,7 +40,7 @@ class LampPacking {
     GpuLamp gpu{};
     gpu.position = {Turned(placed.lamp.position_m - view_.from_eye.origin_m()),
                     along.lamp.radius_m};
-    gpu.intensity = FloatsOf(placed.intensity.value, placed.intensity.count);
+    gpu.intensity = FloatsOf(placed.intensity.values(), placed.intensity.size());
     gpu.axis = {Turned(placed.lamp.axis), static_cast<float>(placed.lamp.profile.kind)};
     gpu.side = {Turned(placed.lamp.side), static_cast<float>(chosen.table)};
     gpu.profile = {Edges(placed.lamp.profile), placed.distance_m, placed.HoldsEye() ? 1.0 : 0.0};
@@ -86,9 +86,9 @@ void PutAir(const std::vector<LampLayer>& layers, std::size_t bands, double refe
     block.falls[static_cast<glm::length_t>(k)] = static_cast<float>(1.0 / layers[k].scale_height_m);
     block.bases[static_cast<glm::length_t>(k)] = static_cast<float>(layers[k].base_m - reference_m);
   }
-  block.molecules = FloatsOf(layers[0].scattering_per_m.value, bands);
-  block.aerosol = FloatsOf(layers[1].scattering_per_m.value, bands);
-  block.dimming = FloatsOf(layers[1].extinction_per_m.value, bands);
+  block.molecules = FloatsOf(layers[0].scattering_per_m.values(), bands);
+  block.aerosol = FloatsOf(layers[1].scattering_per_m.values(), bands);
+  block.dimming = FloatsOf(layers[1].extinction_per_m.values(), bands);
   block.mie_phase = ParametersOf(layers[1].phase);
   if (layers.size() < 3) return;
   ALPENGLOW_ENSURE(layers.size(), ==, std::size_t{3});

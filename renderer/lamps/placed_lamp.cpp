@@ -20,8 +20,8 @@
 namespace alpenglow::renderer {
 namespace {
 
-Bands<double> OneBand(const Bands<double>& all, std::size_t band) {
-  Bands<double> one(1);
+SpectrumOf<double> OneBand(const SpectrumOf<double>& all, std::size_t band) {
+  SpectrumOf<double> one(1);
   one[0] = all[band];
   return one;
 }
@@ -124,8 +124,8 @@ PlacedLamp PlacedOn(const LampStage& stage, const Light& light, std::size_t numb
   return placed;
 }
 
-Bands<float> LampIntensity(double temperature_k, double candela,
-                           const std::vector<double>& wavelengths_nm, const BandColour& colour) {
+Spectrum LampIntensity(double temperature_k, double candela,
+                       const std::vector<double>& wavelengths_nm, const BandColour& colour) {
   std::vector<double> spectrum;
   for (const double nm : wavelengths_nm) spectrum.push_back(BlackBodyRadiance(nm, temperature_k));
   const double luminous = colour.Xyz(spectrum)[1];
@@ -136,7 +136,7 @@ Bands<float> LampIntensity(double temperature_k, double candela,
         "780 nm",
         temperature_k, wavelengths_nm.size(), wavelengths_nm.front(), wavelengths_nm.back()));
   }
-  Bands<float> intensity(spectrum.size());
+  Spectrum intensity(spectrum.size());
   for (std::size_t band = 0; band < spectrum.size(); ++band) {
     intensity[band] = static_cast<float>(candela * spectrum[band] / luminous);
   }
@@ -172,7 +172,7 @@ PlacedLamp Before(const LampEye& eye, const LampStage& stage, PlacedLamp placed)
     layer.extinction_per_m = OneBand(layer.extinction_per_m, stage.bands() / 2);
   }
   placed.blur = eye.lens ? eye.lens->BlurRadius(to_lamp) : 0.0;
-  placed.towards_eye = Bands<float>(stage.bands());
+  placed.towards_eye = Spectrum(stage.bands());
   return placed;
 }
 
@@ -262,16 +262,16 @@ double SeenPerSr(const PlacedLamp& placed, const LampStage& stage, const LampEye
   return shared::SoftDiskPerSr(off, radius);
 }
 
-Bands<float> SeenFromWithin(const PlacedLamp& placed, const CameraRay& ray) {
+Spectrum SeenFromWithin(const PlacedLamp& placed, const CameraRay& ray) {
   const double radius = placed.lamp.radius_m;
   return Scaled(placed.intensity,
                 TransmittanceBetween(placed.air, ray.eye, ray.eye + radius * ray.direction),
                 RelativeIntensity(placed.lamp, -ray.direction) / (kPi * radius * radius));
 }
 
-Bands<float> Scaled(const Bands<float>& intensity, const Bands<double>& factor, double scale) {
-  Bands<float> scaled(intensity.count);
-  for (std::size_t band = 0; band < scaled.count; ++band) {
+Spectrum Scaled(const Spectrum& intensity, const SpectrumOf<double>& factor, double scale) {
+  Spectrum scaled(intensity.size());
+  for (std::size_t band = 0; band < scaled.size(); ++band) {
     scaled[band] = intensity[band] * static_cast<float>(scale * factor[band]);
   }
   return scaled;

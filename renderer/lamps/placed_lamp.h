@@ -32,7 +32,7 @@ struct PlacedLamp {
   Lamp lamp;
   LampAir air;
   LampAir middle_air;       // of the middle band only, for estimates
-  Bands<float> intensity;   // W sr^-1 nm^-1 in its brightest direction
+  Spectrum intensity;       // W sr^-1 nm^-1 in its brightest direction
   double candela = 0.0;     // in its brightest direction
   double mean_share = 1.0;  // mean intensity over all directions, relative to the brightest
   double above_ground_m = 0.0;
@@ -40,7 +40,7 @@ struct PlacedLamp {
   glm::dvec3 direction{0.0};  // from the eye, unit
   double blur = 0.0;          // radius in the picture, as in CameraRays::BlurRadius
   bool is_hidden = false;     // from the eye, by terrain or the planet
-  Bands<float> towards_eye;   // intensity, dimmed by the air
+  Spectrum towards_eye;       // intensity, dimmed by the air
 
   /// Returns whether the eye is inside the luminous sphere.
   [[nodiscard]] bool HoldsEye() const { return distance_m <= lamp.radius_m; }
@@ -58,9 +58,9 @@ using MeasuredLamps = std::map<std::string, IesLamp>;
 /// Returns the spectral intensity of a black body with a luminous intensity of `candela`. Throws
 /// InputError if it has no luminance in the bands, such as a black body of 1000 K in two bands at
 /// 700 and 830 nm.
-[[nodiscard]] Bands<float> LampIntensity(double temperature_k, double candela,
-                                         const std::vector<double>& wavelengths_nm,
-                                         const BandColour& colour);
+[[nodiscard]] Spectrum LampIntensity(double temperature_k, double candela,
+                                     const std::vector<double>& wavelengths_nm,
+                                     const BandColour& colour);
 
 /// Returns all lights of a scene that emit, without an eye. Throws InputError as PlacedOn and
 /// MeasuredLampsOf do.
@@ -102,10 +102,10 @@ struct LampAlongRay {
 /// Returns the luminance of a lamp that contains the eye: I(-d) / (pi R^2) for the direction d of
 /// the ray, as if the eye were in the centre and saw the inside of the luminous sphere. This is the
 /// limit of a lamp seen from outside: its disk of luminance I / (pi R^2) fills the sky.
-[[nodiscard]] Bands<float> SeenFromWithin(const PlacedLamp& placed, const CameraRay& ray);
+[[nodiscard]] Spectrum SeenFromWithin(const PlacedLamp& placed, const CameraRay& ray);
 
 /// Returns intensity * scale * factor, in floats.
-[[nodiscard]] Bands<float> Scaled(const Bands<float>& intensity, const Bands<double>& factor,
-                                  double scale);
+[[nodiscard]] Spectrum Scaled(const Spectrum& intensity, const SpectrumOf<double>& factor,
+                              double scale);
 
 }  // namespace alpenglow::renderer

@@ -31,10 +31,10 @@ struct LampSeen {
   const LampAirlightIrradiance& glow;
   double distance_m, rise;
 
-  [[nodiscard]] Bands<double> On(const glm::dvec3& normal) const {
+  [[nodiscard]] SpectrumOf<double> On(const glm::dvec3& normal) const {
     return glow.On(glow.ToLamp(distance_m, rise), normal, {0.0, 0.0, 1.0});
   }
-  [[nodiscard]] Bands<double> OnLevel() const { return On({0.0, 0.0, 1.0}); }
+  [[nodiscard]] SpectrumOf<double> OnLevel() const { return On({0.0, 0.0, 1.0}); }
 };
 
 /// Returns the weights of a slope for the terms of LampAirlightOnSlope.
@@ -93,19 +93,19 @@ const std::vector<double>& FitMatrix() {
 }
 
 SlopeTerms FitOf(const LampSeen& view) {
-  const Bands<double> level = view.OnLevel();
+  const SpectrumOf<double> level = view.OnLevel();
   std::array<std::vector<double>, 4> sums;
   sums.fill(std::vector<double>(kSlopeTerms));
   for (const FitSlope& slope : FittedSlopes()) {
-    const Bands<double> light = view.On(slope.normal);
-    for (std::size_t band = 0; band < level.count; ++band) {
+    const SpectrumOf<double> light = view.On(slope.normal);
+    for (std::size_t band = 0; band < level.size(); ++band) {
       const double over_level = light[band] / std::max(level[band], kLeastLight_per_m) - 1.0;
       for (std::size_t i = 0; i < kSlopeTerms; ++i)
         sums[band][i] += slope.weight * slope.of_term[i] * over_level;
     }
   }
   SlopeTerms terms{};
-  for (std::size_t band = 0; band < level.count; ++band) {
+  for (std::size_t band = 0; band < level.size(); ++band) {
     const std::vector<double> fitted = SolvePositiveDefinite(FitMatrix(), sums[band]);
     for (std::size_t i = 0; i < kSlopeTerms; ++i)
       terms[i][static_cast<glm::length_t>(band)] = static_cast<float>(fitted[i]);
@@ -115,9 +115,9 @@ SlopeTerms FitOf(const LampSeen& view) {
 
 /// Returns the logarithm of the light on level ground times the distance.
 glm::vec4 LogLevelOf(const LampSeen& view) {
-  const Bands<double> level = view.OnLevel();
+  const SpectrumOf<double> level = view.OnLevel();
   glm::vec4 logs(static_cast<float>(std::log(kLeastLight_per_m)));
-  for (std::size_t band = 0; band < level.count; ++band) {
+  for (std::size_t band = 0; band < level.size(); ++band) {
     logs[static_cast<glm::length_t>(band)] =
         static_cast<float>(std::log(std::max(level[band], kLeastLight_per_m) * view.distance_m));
   }

@@ -42,9 +42,9 @@ double ErrorOf(const LampNode& node) {
   return node.light.candela / distance * relative * relative;
 }
 
-glm::vec4 ScaledInFloats(const Bands<float>& bands, double scale) {
+glm::vec4 ScaledInFloats(const Spectrum& bands, double scale) {
   glm::vec4 values(0.0F);
-  for (std::size_t band = 0; band < std::min<std::size_t>(bands.count, 4); ++band) {
+  for (std::size_t band = 0; band < std::min<std::size_t>(bands.size(), 4); ++band) {
     values[static_cast<glm::length_t>(band)] = static_cast<float>(scale) * bands[band];
   }
   return values;

@@ -320,8 +320,8 @@ double SurfaceWeights::GlowOf(std::uint32_t number) const {
   const PlacedLamp& light = tree_->Light(number);
   const glm::dvec3& point = tile_->ends[0].point;
   const glm::dvec3 up = stage_->UpAt(point);
-  const Bands<double> glow = tree_->GlowOf(number).On(light.lamp.position_m - point, up, up);
-  return light.candela * light.mean_share * glow[glow.count / 2] / kPi;
+  const SpectrumOf<double> glow = tree_->GlowOf(number).On(light.lamp.position_m - point, up, up);
+  return light.candela * light.mean_share * glow[glow.size() / 2] / kPi;
 }
 
 double SurfaceWeights::FacingOf(std::uint32_t number) const {

@@ -53,8 +53,8 @@ std::shared_ptr<const TerrainIrradiance> GroundLight::OnTerrain(const GroundSour
   return on_terrain;
 }
 
-BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources& from,
-                                    const TerrainIrradiance& sky) const {
+Spectrum GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources& from,
+                                   const TerrainIrradiance& sky) const {
   const Lighting& light = from.light;
   const double cell_m = sky.horizons()->views().heights().cell_m;
   Hit hit;
@@ -64,7 +64,7 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources
       place.point + 0.01 * cell_m * place.normal;  // the nodes of the slopes lie inside the surface
   hit.footprint_m = cell_m;
   const LocalLight sun = LocalLightAt(hit.point, light);
-  BandLight irradiance =
+  Spectrum irradiance =
       sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air});
   if (const auto direct = SunIrradiance(hit, from, sun, light.source.direction.seen))
     irradiance = irradiance + *direct;
@@ -93,8 +93,8 @@ double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const Local
   return faces && !occluded ? cosine : 0.0;
 }
 
-BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
-                                     const LocalLight& sun) const {
+Spectrum GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
+                                    const LocalLight& sun) const {
   const Lighting& light = from.light;
   const glm::dvec3 flat_sun = light.source.direction.for_air - sun.mu_s_for_air * sun.up;
   const double normal_mu = std::clamp(glm::dot(hit.normal, sun.up), -1.0, 1.0);
@@ -102,11 +102,11 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
   const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
   const double azimuth =
       lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
-  const BandLight clear = SeesTerrain(hit, light)
-                              ? light.on_terrain->Irradiance({hit.smooth_point, hit.normal, sun.up,
-                                                              sun.altitude_m, sun.mu_s_for_air})
-                              : air_.multiple_scattering().Irradiance(
-                                    sun.altitude_m, sun.mu_s_for_air, normal_mu, azimuth);
+  const Spectrum clear = SeesTerrain(hit, light)
+                             ? light.on_terrain->Irradiance({hit.smooth_point, hit.normal, sun.up,
+                                                             sun.altitude_m, sun.mu_s_for_air})
+                             : air_.multiple_scattering().Irradiance(
+                                   sun.altitude_m, sun.mu_s_for_air, normal_mu, azimuth);
   if (from.media == nullptr) return clear;
   const SkyThroughMedia sky = from.media->SkyOnSurface(sun.altitude_m, normal_mu);
   return sky.left * clear + sky.added;
@@ -122,35 +122,35 @@ GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const gl
   }
   if (parts_.geometry.HasTerrain())
     return parts_.material.OfPlanet(at, light.surface.Albedo(at, glm::dot(hit.mesh_normal, up)));
-  BandLight albedo(air_.bands());
-  for (std::size_t band = 0; band < albedo.count; ++band)
+  Spectrum albedo(air_.bands());
+  for (std::size_t band = 0; band < albedo.size(); ++band)
     albedo[band] = static_cast<float>(air_.medium().ground_albedo[band]);
   return parts_.material.OfPlanet(at, albedo);
 }
 
-BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,
-                                const Lighting& light, const LocalLight& sun) const {
-  BandLight sum(air_.bands());
+Spectrum GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,
+                               const Lighting& light, const LocalLight& sun) const {
+  Spectrum sum(air_.bands());
   const auto rays = patch.Mirrored(hit.normal, to_eye);
   for (const MirroredRay& ray : rays.All())
     sum = sum + static_cast<float>(ray.weight) * SeenIn(ray, hit, light, sun);
   return sum;
 }
 
-BandLight GroundLight::SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
-                              const LocalLight& sun) const {
+Spectrum GroundLight::SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
+                             const LocalLight& sun) const {
   const SlopePoint at{hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air};
   return SeesTerrain(hit, light) ? light.on_terrain->Radiance(at, ray.direction, ray.spread)
                                  : light.on_terrain->SkyRadiance(at, ray.direction);
 }
 
-std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const GroundSources& from,
-                                                    const LocalLight& sun,
-                                                    const glm::dvec3& to_disk) const {
+std::optional<Spectrum> GroundLight::SunIrradiance(const Hit& hit, const GroundSources& from,
+                                                   const LocalLight& sun,
+                                                   const glm::dvec3& to_disk) const {
   const double cosine = LitCosine(hit, from.light, sun, to_disk);
   if (cosine <= 0.0) return std::nullopt;
-  const BandLight clear = static_cast<float>(sun.visible_fraction * cosine) *
-                          air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
+  const Spectrum clear = static_cast<float>(sun.visible_fraction * cosine) *
+                         air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   if (from.media == nullptr) return clear;
   return clear * from.media->BeamLeft(hit.point, to_disk);
 }
@@ -173,7 +173,7 @@ NaturalRadiance GroundLight::Natural(const SeenGround& seen, const GroundSources
                                      std::array<double, 2> disk_sample) const {
   const Lighting& light = from.light;
   const LocalLight sun = LocalLightAt(seen.hit.point, light);
-  NaturalRadiance sent{BandLight(air_.bands())};
+  NaturalRadiance sent{Spectrum(air_.bands())};
   const glm::dvec3 to_disk = TowardsDisk(light.source, disk_sample);
   if (const auto direct = SunIrradiance(seen.hit, from, sun, to_disk)) {
     sent.radiance = seen.patch.Brdf(AnglesBetween(seen.hit.normal, to_disk, seen.to_eye)) * *direct;
@@ -189,7 +189,7 @@ NaturalRadiance GroundLight::Natural(const SeenGround& seen, const GroundSources
   return sent;
 }
 
-BandLight GroundLight::OfLamps(const SeenGround& seen, const LampNodes& near) const {
+Spectrum GroundLight::OfLamps(const SeenGround& seen, const LampNodes& near) const {
   const Hit& at = seen.hit;
   return static_cast<float>(1.0 / kPi) *
          (seen.albedo * parts_.lamps.OnSurface(
@@ -201,10 +201,10 @@ PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSource
                                       std::array<double, 2> disk_sample) const {
   const Lighting& light = from.light;
   const glm::dvec3& to_eye = seen.to_eye;
-  PolarisedLight sum{BandLight(air_.bands()), BandLight(air_.bands())};
+  PolarisedLight sum{Spectrum(air_.bands()), Spectrum(air_.bands())};
   if (!seen.patch.IsWater()) return sum;
   const LocalLight sun = LocalLightAt(seen.hit.point, light);
-  const auto add = [&](const glm::dvec3& to_light, const BandLight& mirrored) {
+  const auto add = [&](const glm::dvec3& to_light, const Spectrum& mirrored) {
     const glm::dvec3 across = glm::cross(to_light, to_eye);
     const double sine = glm::length(across);
     if (sine < 1e-9) return;

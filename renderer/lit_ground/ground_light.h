@@ -23,14 +23,14 @@ namespace alpenglow::renderer {
 struct SeenGround {
   GroundPatch patch;
   Hit hit;            // on water, with the normal of the water surface
-  BandLight albedo;   // albedo of the body of the material, towards the eye
+  Spectrum albedo;    // albedo of the body of the material, towards the eye
   glm::dvec3 up;      // unit
   glm::dvec3 to_eye;  // unit
 };
 
 /// Light of a distant source and of its sky that leaves the ground towards the eye.
 struct NaturalRadiance {
-  BandLight radiance;            // W m^-2 sr^-1 nm^-1
+  Spectrum radiance;             // W m^-2 sr^-1 nm^-1
   float disk_visibility = 0.0F;  // visible fraction of the disk, 0 to 1
 };
 
@@ -71,7 +71,7 @@ class GroundLight {
 
   /// Returns the radiance towards the eye that lamps cause, W m^-2 sr^-1 nm^-1. @param near  lamps
   /// that can light the point.
-  [[nodiscard]] BandLight OfLamps(const SeenGround& seen, const LampNodes& near) const;
+  [[nodiscard]] Spectrum OfLamps(const SeenGround& seen, const LampNodes& near) const;
 
   /// Returns Q and U of the light of sun and sky that water mirrors, in the axes of the picture.
   /// The incident light is taken as unpolarised, although light of the sky is polarised. A degree
@@ -90,25 +90,25 @@ class GroundLight {
                                  const glm::dvec3& to_disk) const;
   /// Returns the irradiance of the sun through the air, per unit solar irradiance [1]; no value in
   /// the shade.
-  [[nodiscard]] std::optional<BandLight> SunIrradiance(const Hit& hit, const GroundSources& from,
-                                                       const LocalLight& sun,
-                                                       const glm::dvec3& to_disk) const;
-  [[nodiscard]] BandLight SkyIrradiance(const Hit& hit, const GroundSources& from,
-                                        const LocalLight& sun) const;
+  [[nodiscard]] std::optional<Spectrum> SunIrradiance(const Hit& hit, const GroundSources& from,
+                                                      const LocalLight& sun,
+                                                      const glm::dvec3& to_disk) const;
+  [[nodiscard]] Spectrum SkyIrradiance(const Hit& hit, const GroundSources& from,
+                                       const LocalLight& sun) const;
   /// Returns the radiance that a slope sends to other slopes, per unit solar irradiance [1/sr].
-  [[nodiscard]] BandLight SentToSlopes(const SlopePlace& place, const GroundSources& from,
-                                       const TerrainIrradiance& sky) const;
+  [[nodiscard]] Spectrum SentToSlopes(const SlopePlace& place, const GroundSources& from,
+                                      const TerrainIrradiance& sky) const;
   /// @param cosine  between the direction to the eye and the normal of the mesh.
   [[nodiscard]] GroundPatch PatchAt(const Hit& hit, const Lighting& light, const glm::dvec3& up,
                                     double cosine) const;
   /// Returns the radiance of the sky, and of the slopes in front of it, mirrored in a glossy
   /// surface, per unit solar irradiance [1/sr].
-  [[nodiscard]] BandLight Mirrored(const GroundPatch& patch, const Hit& hit,
-                                   const glm::dvec3& to_eye, const Lighting& light,
-                                   const LocalLight& sun) const;
+  [[nodiscard]] Spectrum Mirrored(const GroundPatch& patch, const Hit& hit,
+                                  const glm::dvec3& to_eye, const Lighting& light,
+                                  const LocalLight& sun) const;
   /// Returns the radiance that arrives along a mirrored ray, per unit solar irradiance [1/sr].
-  [[nodiscard]] BandLight SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
-                                 const LocalLight& sun) const;
+  [[nodiscard]] Spectrum SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
+                                const LocalLight& sun) const;
 
   GroundParts parts_;
   SolvedAir air_;

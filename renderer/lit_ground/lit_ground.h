@@ -119,9 +119,9 @@ template <typename Vertex>
   return ready;
 }
 
-[[nodiscard]] inline std::array<float, 4> InFourBands(const BandLight& light) {
+[[nodiscard]] inline std::array<float, 4> InFourBands(const Spectrum& light) {
   std::array<float, 4> four{};
-  std::copy_n(light.value.begin(), light.count, four.begin());
+  std::ranges::copy(light.values(), four.begin());
   return four;
 }
 

@@ -35,7 +35,7 @@ PolarisedLight InAxes(const PolarisedLight& of_vertical, const glm::dvec3& view,
   const Analyser turned = AnalyserAlong(axes.up, vertical);
   const float side = glm::dot(to_sun, vertical.right) > 0.0 ? -1.0F : 1.0F;
   PolarisedLight light = of_vertical;
-  for (std::size_t band = 0; band < light.q.count; ++band) {
+  for (std::size_t band = 0; band < light.q.size(); ++band) {
     const float q = of_vertical.q[band], u = side * of_vertical.u[band];
     light.q[band] = turned.q * q + turned.u * u;
     light.u[band] = turned.q * u - turned.u * q;
@@ -43,11 +43,10 @@ PolarisedLight InAxes(const PolarisedLight& of_vertical, const glm::dvec3& view,
   return light;
 }
 
-BandLight Passed(const Analyser& analyser, const BandLight& light,
-                 const PolarisedLight* polarised) {
-  BandLight passed = 0.5F * light;
+Spectrum Passed(const Analyser& analyser, const Spectrum& light, const PolarisedLight* polarised) {
+  Spectrum passed = 0.5F * light;
   if (polarised == nullptr) return passed;
-  for (std::size_t band = 0; band < passed.count; ++band) {
+  for (std::size_t band = 0; band < passed.size(); ++band) {
     passed[band] += 0.5F * (analyser.q * polarised->q[band] + analyser.u * polarised->u[band]);
   }
   return passed;
@@ -57,7 +56,7 @@ PolarisedLight operator+(const PolarisedLight& a, const PolarisedLight& b) {
   return {a.q + b.q, a.u + b.u};
 }
 
-PolarisedLight operator*(const BandLight& left, const PolarisedLight& light) {
+PolarisedLight operator*(const Spectrum& left, const PolarisedLight& light) {
   return {left * light.q, left * light.u};
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// This header defines sums and products of light in bands, band by band, and polarised light in
-// the axes of a picture.
+// This header defines polarised light in the axes of a picture.
 //
 // With the axes up and right at a viewing direction, light that vibrates along
 // p = cos(a) up + sin(a) right has the intensity I(a) = (I + Q cos(2 a) + U sin(2 a)) / 2. Q is the
@@ -22,32 +21,11 @@
 
 namespace alpenglow::renderer {
 
-/// Light, or a factor of light, in each band of a picture.
-using BandLight = Bands<float>;
-
-[[nodiscard]] inline BandLight operator+(const BandLight& a, const BandLight& b) {
-  BandLight sum(a.count);
-  for (std::size_t band = 0; band < a.count; ++band) sum[band] = a[band] + b[band];
-  return sum;
-}
-
-[[nodiscard]] inline BandLight operator*(const BandLight& a, const BandLight& b) {
-  BandLight product(a.count);
-  for (std::size_t band = 0; band < a.count; ++band) product[band] = a[band] * b[band];
-  return product;
-}
-
-[[nodiscard]] inline BandLight operator*(float scale, const BandLight& a) {
-  BandLight product(a.count);
-  for (std::size_t band = 0; band < a.count; ++band) product[band] = scale * a[band];
-  return product;
-}
-
 /// A view of band light in double precision, for functions that sum colours.
 class InDouble {
  public:
-  explicit InDouble(const BandLight& light) : count_(light.count) {  // NOLINT: value_ is set below
-    std::copy_n(light.value.begin(), count_, value_.begin());
+  explicit InDouble(const Spectrum& light) : count_(light.size()) {  // NOLINT: value_ is set below
+    std::copy_n(light.values().begin(), count_, value_.begin());
   }
   operator std::span<const double>() const { return {value_.data(), count_}; }  // NOLINT: a view
 
@@ -71,12 +49,12 @@ struct Analyser {
 
 /// Returns the light that passes the analyser: half of unpolarised light.
 /// @param polarised  its Q and U in the axes of the analyser; null: unpolarised.
-[[nodiscard]] BandLight Passed(const Analyser& analyser, const BandLight& light,
-                               const PolarisedLight* polarised);
+[[nodiscard]] Spectrum Passed(const Analyser& analyser, const Spectrum& light,
+                              const PolarisedLight* polarised);
 
 /// Returns Q and U of two superposed lights.
 [[nodiscard]] PolarisedLight operator+(const PolarisedLight& a, const PolarisedLight& b);
 /// Returns Q and U behind a medium with a transmittance.
-[[nodiscard]] PolarisedLight operator*(const BandLight& left, const PolarisedLight& light);
+[[nodiscard]] PolarisedLight operator*(const Spectrum& left, const PolarisedLight& light);
 
 }  // namespace alpenglow::renderer

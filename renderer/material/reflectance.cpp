@@ -30,8 +30,8 @@ Axes AxesAround(const glm::dvec3& normal, const glm::dvec3& to_eye) {
 }
 
 // Lee, Carder, Arnone (2002), equations 2, 3 and table 2.
-Bands<float> LightFromUnderWater(std::span<const double> wavelengths_nm) {
-  Bands<float> reflectance(wavelengths_nm.size());
+Spectrum LightFromUnderWater(std::span<const double> wavelengths_nm) {
+  Spectrum reflectance(wavelengths_nm.size());
   for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
     const double nm = wavelengths_nm[band];
     const double absorption = WaterAbsorption(nm) + 0.02 * std::exp(-0.015 * (nm - 440.0));
@@ -152,8 +152,8 @@ double FresnelPolarisation(double cosine, double refractive_index) {
   return shared::FresnelPolarisation(cosine, refractive_index);
 }
 
-Bands<float> Wetted(Bands<float> albedo, double wetness) {
-  for (std::size_t band = 0; band < albedo.count; ++band)
+Spectrum Wetted(Spectrum albedo, double wetness) {
+  for (std::size_t band = 0; band < albedo.size(); ++band)
     albedo[band] = shared::WetAlbedo(albedo[band], static_cast<float>(wetness));
   return albedo;
 }
@@ -170,23 +170,23 @@ RoughDiffuse::RoughDiffuse(double roughness)
 
 double RoughDiffuse::Single(double mu) const { return shared::RoughSingle(mu, roughness_, scale_); }
 
-Bands<float> RoughDiffuse::Brdf(const Bands<float>& albedo, const ReflectionAngles& at) const {
+Spectrum RoughDiffuse::Brdf(const Spectrum& albedo, const ReflectionAngles& at) const {
   const auto once = static_cast<float>(
       shared::RoughOnce(at.mu_light, at.mu_eye, at.cos_between, roughness_, scale_));
   const auto again =
       static_cast<float>(shared::RoughTwice(at.mu_light, at.mu_eye, roughness_, scale_));
   const auto mean = static_cast<float>(mean_single_);
-  Bands<float> f(albedo.count);
-  for (std::size_t band = 0; band < albedo.count; ++band)
+  Spectrum f(albedo.size());
+  for (std::size_t band = 0; band < albedo.size(); ++band)
     f[band] = albedo[band] * once + again * shared::RoughAgain(albedo[band], mean);
   return f;
 }
 
-Bands<float> RoughDiffuse::Albedo(const Bands<float>& albedo, double mu) const {
+Spectrum RoughDiffuse::Albedo(const Spectrum& albedo, double mu) const {
   const auto once = static_cast<float>(Single(mu));
   const auto mean = static_cast<float>(mean_single_);
-  Bands<float> sent(albedo.count);
-  for (std::size_t band = 0; band < albedo.count; ++band) {
+  Spectrum sent(albedo.size());
+  for (std::size_t band = 0; band < albedo.size(); ++band) {
     sent[band] = albedo[band] * once + (1.0F - once) * shared::RoughAgain(albedo[band], mean);
   }
   return sent;
@@ -206,18 +206,18 @@ double Glossy::Coat(const ReflectionAngles& at) const {
                           exponent_, normalisation_);
 }
 
-Bands<float> Glossy::Brdf(const Bands<float>& albedo, const ReflectionAngles& at) const {
+Spectrum Glossy::Brdf(const Spectrum& albedo, const ReflectionAngles& at) const {
   const auto coat = static_cast<float>(Coat(at));
   const auto body = static_cast<float>(shared::BodyUnderCoat(at.mu_light, at.mu_eye, f0_));
-  Bands<float> f(albedo.count);
-  for (std::size_t band = 0; band < albedo.count; ++band) f[band] = coat + body * albedo[band];
+  Spectrum f(albedo.size());
+  for (std::size_t band = 0; band < albedo.size(); ++band) f[band] = coat + body * albedo[band];
   return f;
 }
 
-Bands<float> Glossy::BodyAlbedo(const Bands<float>& albedo, double mu) const {
+Spectrum Glossy::BodyAlbedo(const Spectrum& albedo, double mu) const {
   const auto share = static_cast<float>((1.0 - f0_) * shared::CoatPassed(mu));
-  Bands<float> sent(albedo.count);
-  for (std::size_t band = 0; band < albedo.count; ++band) sent[band] = share * albedo[band];
+  Spectrum sent(albedo.size());
+  for (std::size_t band = 0; band < albedo.size(); ++band) sent[band] = share * albedo[band];
   return sent;
 }
 
@@ -263,19 +263,20 @@ double Water::Polarisation(double cos_between) {
   return FresnelPolarisation(shared::HalfCosLight(cos_between), kRefractiveIndex);
 }
 
-Bands<float> Water::Brdf(const ReflectionAngles& at, double variance) const {
+Spectrum Water::Brdf(const ReflectionAngles& at, double variance) const {
   const auto glitter = static_cast<float>(Glitter(at, variance));
   const auto through = static_cast<float>(Transmitted(at.mu_light) * Transmitted(at.mu_eye) / kPi);
-  Bands<float> f(under_surface_.count);
-  for (std::size_t band = 0; band < f.count; ++band)
+  Spectrum f(under_surface_.size());
+  for (std::size_t band = 0; band < f.size(); ++band)
     f[band] = glitter + through * under_surface_[band];
   return f;
 }
 
-Bands<float> Water::BodyAlbedo(double mu) const {
+Spectrum Water::BodyAlbedo(double mu) const {
   const auto through = static_cast<float>(shared::WaterLetsIn(kRefractiveIndex, mu));
-  Bands<float> sent(under_surface_.count);
-  for (std::size_t band = 0; band < sent.count; ++band) sent[band] = through * under_surface_[band];
+  Spectrum sent(under_surface_.size());
+  for (std::size_t band = 0; band < sent.size(); ++band)
+    sent[band] = through * under_surface_[band];
   return sent;
 }
 
@@ -331,30 +332,30 @@ Snow::Snow(double grain_diameter_m, std::span<const double> wavelengths_nm)
   constexpr double kAsymmetry = 0.845;  // g
   const double length = 16.0 * kEnhancement / (9.0 * (1.0 - kAsymmetry)) *
                         RequireInRange(grain_diameter_m, 5e-5, 5e-3, "grain diameter [m]");
-  for (std::size_t band = 0; band < y_.count; ++band)
+  for (std::size_t band = 0; band < y_.size(); ++band)
     y_[band] = static_cast<float>(std::sqrt(length * IceAbsorption(wavelengths_nm[band])));
 }
 
-Bands<float> Snow::Brdf(const ReflectionAngles& at) const {
+Spectrum Snow::Brdf(const ReflectionAngles& at) const {
   const double r0 = WithoutAbsorption(at) * Balanced(at.mu_light) * Balanced(at.mu_eye);
   const auto fall =
       static_cast<float>(shared::SnowEscape(at.mu_light) * shared::SnowEscape(at.mu_eye) / r0);
   const auto scale = static_cast<float>(r0 / kPi);
-  Bands<float> f(y_.count);
-  for (std::size_t band = 0; band < f.count; ++band) f[band] = scale * std::exp(-y_[band] * fall);
+  Spectrum f(y_.size());
+  for (std::size_t band = 0; band < f.size(); ++band) f[band] = scale * std::exp(-y_[band] * fall);
   return f;
 }
 
-Bands<float> Snow::Albedo(double mu) const {
+Spectrum Snow::Albedo(double mu) const {
   const auto escape = static_cast<float>(shared::SnowEscape(mu));
-  Bands<float> sent(y_.count);
-  for (std::size_t band = 0; band < sent.count; ++band) sent[band] = std::exp(-y_[band] * escape);
+  Spectrum sent(y_.size());
+  for (std::size_t band = 0; band < sent.size(); ++band) sent[band] = std::exp(-y_[band] * escape);
   return sent;
 }
 
-Bands<float> Snow::SphericalAlbedo() const {
-  Bands<float> sent(y_.count);
-  for (std::size_t band = 0; band < sent.count; ++band) sent[band] = std::exp(-y_[band]);
+Spectrum Snow::SphericalAlbedo() const {
+  Spectrum sent(y_.size());
+  for (std::size_t band = 0; band < sent.size(); ++band) sent[band] = std::exp(-y_[band]);
   return sent;
 }
 

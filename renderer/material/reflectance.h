@@ -80,7 +80,7 @@ struct MirroredRays {
 
 /// Returns the albedo of a wet surface: WetAlbedo of reflectance.glsl in all bands.
 /// @param wetness  fraction of the surface that is wet, in [0, 1].
-[[nodiscard]] Bands<float> Wetted(Bands<float> albedo, double wetness);
+[[nodiscard]] Spectrum Wetted(Spectrum albedo, double wetness);
 
 /// A diffuse surface of facets that shade each other (Oren, Nayar 1994), in the form of Portsmouth,
 /// Kutz, Hill (2025), JCGT 14(1), which includes multiple reflections between facets: a surface of
@@ -92,10 +92,10 @@ class RoughDiffuse {
   explicit RoughDiffuse(double roughness);
 
   /// @param albedo  of a facet.
-  [[nodiscard]] Bands<float> Brdf(const Bands<float>& albedo, const ReflectionAngles& at) const;
+  [[nodiscard]] Spectrum Brdf(const Spectrum& albedo, const ReflectionAngles& at) const;
   /// Returns the directional albedo (which is also the reflectance of a uniform sky seen from
   /// `mu`).
-  [[nodiscard]] Bands<float> Albedo(const Bands<float>& albedo, double mu) const;
+  [[nodiscard]] Spectrum Albedo(const Spectrum& albedo, double mu) const;
 
   /// Parameters of reflectance.glsl for this roughness.
   [[nodiscard]] double roughness() const { return roughness_; }
@@ -127,9 +127,9 @@ class Glossy {
   [[nodiscard]] double Coat(const ReflectionAngles& at) const;
   /// Returns the BRDF of coat and body [1/sr].
   /// @param albedo  of the body.
-  [[nodiscard]] Bands<float> Brdf(const Bands<float>& albedo, const ReflectionAngles& at) const;
+  [[nodiscard]] Spectrum Brdf(const Spectrum& albedo, const ReflectionAngles& at) const;
   /// Returns the fraction of a uniform sky that the body reflects.
-  [[nodiscard]] Bands<float> BodyAlbedo(const Bands<float>& albedo, double mu) const;
+  [[nodiscard]] Spectrum BodyAlbedo(const Spectrum& albedo, double mu) const;
   /// Returns the rays that the coat mirrors. TotalWeight() is the albedo of the coat within 3 % of
   /// it up to roughness 0.5, within 15 % at 1.
   [[nodiscard]] MirroredRays Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const;
@@ -157,7 +157,7 @@ class Water {
   [[nodiscard]] double slope_variance() const { return variance_; }
   /// Reflectance of the water below the surface: pi times radiance over irradiance, with sun and
   /// eye at the zenith.
-  [[nodiscard]] const Bands<float>& under_surface() const { return under_surface_; }
+  [[nodiscard]] const Spectrum& under_surface() const { return under_surface_; }
   /// Returns the distribution of the glitter [1/sr].
   /// @param variance  of the slopes that the normal does not resolve.
   [[nodiscard]] static double Glitter(const ReflectionAngles& at, double variance);
@@ -165,10 +165,10 @@ class Water {
   /// refers to the plane perpendicular to the plane of light and eye.
   [[nodiscard]] static double Polarisation(double cos_between);
   /// Returns the BRDF of glitter plus light from below the surface.
-  [[nodiscard]] Bands<float> Brdf(const ReflectionAngles& at) const { return Brdf(at, variance_); }
-  [[nodiscard]] Bands<float> Brdf(const ReflectionAngles& at, double variance) const;
+  [[nodiscard]] Spectrum Brdf(const ReflectionAngles& at) const { return Brdf(at, variance_); }
+  [[nodiscard]] Spectrum Brdf(const ReflectionAngles& at, double variance) const;
   /// Returns the fraction of a uniform sky that returns from below the surface.
-  [[nodiscard]] Bands<float> BodyAlbedo(double mu) const;
+  [[nodiscard]] Spectrum BodyAlbedo(double mu) const;
   /// Returns the rays that the waves mirror; light that meets a second wave counts as coming from
   /// the horizon. TotalWeight() is the mean Fresnel reflectance of the facets that the eye sees,
   /// within 5 % of it.
@@ -176,7 +176,7 @@ class Water {
 
  private:
   double variance_;
-  Bands<float> under_surface_;
+  Spectrum under_surface_;
 };
 
 /// Deep clean snow by the asymptotic theory of Kokhanovsky, Zege (2004), Appl. Opt. 43, 1589:
@@ -192,19 +192,19 @@ class Snow {
   /// @param grain_diameter_m  in [5e-5, 5e-3]: 2e-4 fresh, 1e-3 old.
   Snow(double grain_diameter_m, std::span<const double> wavelengths_nm);
 
-  [[nodiscard]] Bands<float> Brdf(const ReflectionAngles& at) const;
+  [[nodiscard]] Spectrum Brdf(const ReflectionAngles& at) const;
   /// Returns the directional albedo exp(-y K(mu)), which the integral of Brdf matches within 0.01.
-  [[nodiscard]] Bands<float> Albedo(double mu) const;
+  [[nodiscard]] Spectrum Albedo(double mu) const;
   /// Returns the albedo for a uniform sky, exp(-y).
-  [[nodiscard]] Bands<float> SphericalAlbedo() const;
+  [[nodiscard]] Spectrum SphericalAlbedo() const;
 
-  [[nodiscard]] const Bands<float>& y() const { return y_; }
+  [[nodiscard]] const Spectrum& y() const { return y_; }
   /// Factors of R0 per direction, at equal steps of the root of mu from 0 to 1.
   static constexpr std::size_t kBalanceNodes = 65;
   [[nodiscard]] static const std::array<double, kBalanceNodes>& BalanceNodes();
 
  private:
-  Bands<float> y_;
+  Spectrum y_;
 };
 
 }  // namespace alpenglow::renderer

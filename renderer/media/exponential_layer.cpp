@@ -39,8 +39,8 @@ double PerigeeOf(const PointOnRay& at, double planet_radius_m) {
 }
 
 MediumOptics OpticsOf(const MediumLayer& layer, std::size_t bands) {
-  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands),
-                      layer.phase};
+  MediumOptics optics{SpectrumOf<double>(bands), SpectrumOf<double>(bands),
+                      SpectrumOf<double>(bands), layer.phase};
   for (std::size_t band = 0; band < bands; ++band) {
     optics.extinction_per_m[band] = layer.extinction_per_m;
     optics.scattering_per_m[band] = layer.extinction_per_m * layer.albedo;

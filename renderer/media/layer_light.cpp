@@ -17,8 +17,8 @@ namespace {
 constexpr double kSkyCosine = 0.6;
 constexpr int kGlowNodes = 65;
 
-BandLight NotNegative(BandLight light) {
-  for (std::size_t band = 0; band < light.count; ++band) {
+Spectrum NotNegative(Spectrum light) {
+  for (std::size_t band = 0; band < light.size(); ++band) {
     light[band] = std::max(light[band], 0.0F);
   }
   return light;
@@ -37,7 +37,7 @@ std::vector<double> AltitudesOver(const ExponentialLayer& layer) {
 }  // namespace
 
 LayerLight::LayerLight(const ExponentialLayer& layer, const MultipleScattering& diffuse,
-                       const LightDirection& light, const BandLight& in_air)
+                       const LightDirection& light, const Spectrum& in_air)
     : layer_(layer),
       to_light_(light.seen),
       chi_(LegendreCoefficients(layer.optics().phase, diffuse.options().degree)),
@@ -49,9 +49,9 @@ LayerLight::LayerLight(const ExponentialLayer& layer, const MultipleScattering& 
   peak_scale_ = 1.0 - albedo * ForwardPeak({albedo, chi_[1], chi_[2]});
   broad_.kind = PhaseKind::kHenyeyGreenstein;
   broad_.g = std::clamp(chi_[1], -0.99, 0.99);
-  const BandLight sky = diffuse.SkyIrradiance(std::max(layer.bottom_m(), 0.0), sky_.mu_s());
+  const Spectrum sky = diffuse.SkyIrradiance(std::max(layer.bottom_m(), 0.0), sky_.mu_s());
   const std::vector<double>& ground_albedo = diffuse.medium().ground_albedo;
-  for (std::size_t band = 0; band < ground_.count; ++band) {
+  for (std::size_t band = 0; band < ground_.size(); ++band) {
     ground_[band] = static_cast<float>(ground_albedo[band] / kPi) *
                     (static_cast<float>(std::max(to_light_.z, 0.0)) * in_air[band] + sky[band]);
   }
@@ -63,14 +63,14 @@ LayerLight::LayerLight(const ExponentialLayer& layer, const MultipleScattering& 
   Solve(albedo, std::clamp(1.0 / slant, 1e-3, 1.0), in_air, sky, ground_albedo);
 }
 
-void LayerLight::Solve(double albedo, double mu0, const BandLight& sun, const BandLight& sky,
+void LayerLight::Solve(double albedo, double mu0, const Spectrum& sun, const Spectrum& sky,
                        const std::vector<double>& ground_albedo) {
   const SlabScattering scattering{albedo, chi_[1], chi_[2]};
   for (Glow* glow : {&of_sun_, &of_sky_}) {
-    glow->mean.assign(kGlowNodes, BandLight(sun.count));
-    glow->slope.assign(kGlowNodes, BandLight(sun.count));
+    glow->mean.assign(kGlowNodes, Spectrum(sun.size()));
+    glow->slope.assign(kGlowNodes, Spectrum(sun.size()));
   }
-  for (std::size_t band = 0; band < sun.count; ++band) {
+  for (std::size_t band = 0; band < sun.size(); ++band) {
     const EddingtonSlab under_sun(scattering, depth_, ground_albedo[band], mu0);
     const EddingtonSlab under_sky(scattering, depth_, ground_albedo[band], kSkyCosine);
     const auto beam = static_cast<double>(sun[band]);
@@ -98,7 +98,7 @@ LayerLight::NodePosition LayerLight::PlaceOf(double altitude_m) const {
   return {static_cast<std::size_t>(low), static_cast<float>(u - low)};
 }
 
-BandLight LayerLight::At(const std::vector<BandLight>& nodes, const NodePosition& place) {
+Spectrum LayerLight::At(const std::vector<Spectrum>& nodes, const NodePosition& place) {
   return (1.0F - place.share) * nodes[place.low] + place.share * nodes[place.low + 1];
 }
 
@@ -108,8 +108,8 @@ LayerLight::Look LayerLight::LookAlong(const glm::dvec3& look) const {
           sky_.Towards(look, chi_)};
 }
 
-LayerLight::Scattered LayerLight::At(const Look& look, double altitude_m, const BandLight& sun,
-                                     const BandLight& lit, double slant_depth) const {
+LayerLight::Scattered LayerLight::At(const Look& look, double altitude_m, const Spectrum& sun,
+                                     const Spectrum& lit, double slant_depth) const {
   const double direct = std::exp(-slant_depth);
   const double taken_along = std::exp(-peak_scale_ * slant_depth) - direct;
   const auto once = static_cast<float>(look.phase * direct + look.broad_phase * taken_along);
@@ -124,7 +124,7 @@ LayerLight::Scattered LayerLight::At(const Look& look, double altitude_m, const 
 
 // At the edge of a layer, a radiance that is linear in the cosine is negative in directions from
 // which no light arrives.
-BandLight LayerLight::Field(const Glow& glow, const NodePosition& place, float tilt) {
+Spectrum LayerLight::Field(const Glow& glow, const NodePosition& place, float tilt) {
   return NotNegative(At(glow.mean, place) + tilt * At(glow.slope, place));
 }
 
@@ -132,10 +132,10 @@ float LayerLight::SkyLeft(double altitude_m) const {
   return static_cast<float>(std::exp(-peak_scale_ * DepthAbove(altitude_m) / kSkyCosine));
 }
 
-BandLight LayerLight::OnSurface(double altitude_m, double cos_up) const {
+Spectrum LayerLight::OnSurface(double altitude_m, double cos_up) const {
   const NodePosition place = PlaceOf(altitude_m);
   const auto tilt = static_cast<float>(2.0 * kPi / 3.0 * cos_up);
-  BandLight irradiance =
+  Spectrum irradiance =
       static_cast<float>(kPi) * (At(of_sun_.mean, place) + At(of_sky_.mean, place)) +
       tilt * (At(of_sun_.slope, place) + At(of_sky_.slope, place));
   // The light of the ground is already part of the clear sky's irradiance of a slope.

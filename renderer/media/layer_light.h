@@ -36,13 +36,13 @@ class LayerLight {
   /// @param in_air  transmittance of the air at the layer for the light, while it is above the
   ///   horizon.
   LayerLight(const ExponentialLayer& layer, const MultipleScattering& diffuse,
-             const LightDirection& light, const BandLight& in_air);
+             const LightDirection& light, const Spectrum& in_air);
 
   /// Precomputed values of a ray through the layer.
   struct Look {
-    double phase, broad_phase;   // p and p' towards the sun [1/sr]
-    double down;                 // downward cosine of the arriving light: the look's zenith cosine
-    std::vector<BandLight> sky;  // SkyMoments::Towards
+    double phase, broad_phase;  // p and p' towards the sun [1/sr]
+    double down;                // downward cosine of the arriving light: the look's zenith cosine
+    std::vector<Spectrum> sky;  // SkyMoments::Towards
   };
   [[nodiscard]] Look LookAlong(const glm::dvec3& look) const;
 
@@ -52,10 +52,10 @@ class LayerLight {
   /// @param lit  the same without the air, in [0, 1].
   /// @param slant_depth  of the layer towards the sun.
   struct Scattered {
-    BandLight of_sun, of_sky;
+    Spectrum of_sun, of_sky;
   };
-  [[nodiscard]] Scattered At(const Look& look, double altitude_m, const BandLight& sun,
-                             const BandLight& lit, double slant_depth) const;
+  [[nodiscard]] Scattered At(const Look& look, double altitude_m, const Spectrum& sun,
+                             const Spectrum& lit, double slant_depth) const;
 
   /// Returns the factor on optical depths with which light in the forward peak counts as not
   /// scattered.
@@ -66,11 +66,11 @@ class LayerLight {
 
   /// Returns the irradiance of a surface by the layer's own light [1].
   /// @param cos_up  of its normal's zenith angle.
-  [[nodiscard]] BandLight OnSurface(double altitude_m, double cos_up) const;
+  [[nodiscard]] Spectrum OnSurface(double altitude_m, double cos_up) const;
 
  private:
   struct Glow {
-    std::vector<BandLight> mean, slope;  // at depth (i / last)^4 of the layer's [1/sr]
+    std::vector<Spectrum> mean, slope;  // at depth (i / last)^4 of the layer's [1/sr]
   };
   struct NodePosition {
     std::size_t low;
@@ -78,11 +78,11 @@ class LayerLight {
   };
   [[nodiscard]] double DepthAbove(double altitude_m) const;
   [[nodiscard]] NodePosition PlaceOf(double altitude_m) const;
-  [[nodiscard]] static BandLight At(const std::vector<BandLight>& nodes, const NodePosition& place);
+  [[nodiscard]] static Spectrum At(const std::vector<Spectrum>& nodes, const NodePosition& place);
   /// Returns the diffuse light scattered at a place, at least 0.
   /// @param tilt  the mean cosine of the phase function times Look::down.
-  [[nodiscard]] static BandLight Field(const Glow& glow, const NodePosition& place, float tilt);
-  void Solve(double albedo, double mu0, const BandLight& sun, const BandLight& sky,
+  [[nodiscard]] static Spectrum Field(const Glow& glow, const NodePosition& place, float tilt);
+  void Solve(double albedo, double mu0, const Spectrum& sun, const Spectrum& sky,
              const std::vector<double>& ground_albedo);
 
   const ExponentialLayer& layer_;
@@ -91,8 +91,8 @@ class LayerLight {
   PhaseFunction broad_;
   double extinction_per_m_, depth_;
   double peak_scale_;
-  SkyMoments sky_;    // without the ground
-  BandLight ground_;  // radiance of the ground under a clear sky
+  SkyMoments sky_;   // without the ground
+  Spectrum ground_;  // radiance of the ground under a clear sky
   Glow of_sun_, of_sky_;
 };
 

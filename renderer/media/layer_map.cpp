@@ -20,9 +20,9 @@ namespace {
 
 enum Quantity { kDirect, kBroad, kGlow, kSkyLight, kQuantities };
 
-glm::vec4 InFloats(const BandLight& light) {
+glm::vec4 InFloats(const Spectrum& light) {
   glm::vec4 values(0.0F);
-  for (std::size_t band = 0; band < light.count; ++band) {
+  for (std::size_t band = 0; band < light.size(); ++band) {
     values[static_cast<glm::length_t>(band)] = light[band];
   }
   return values;
@@ -83,13 +83,13 @@ class LayerMarch {
     double taken;  // fraction of light that the layer removes up to the end of this step
   };
 
-  [[nodiscard]] BandLight SunInAir(const glm::dvec3& point) const {
+  [[nodiscard]] Spectrum SunInAir(const glm::dvec3& point) const {
     const double altitude = std::max(AltitudeOverSphere(point, radius_m_), 0.0);
     const glm::dvec3 up = glm::normalize(point + glm::dvec3(0.0, 0.0, radius_m_));
     const double mu_s = std::clamp(glm::dot(up, under_.light.seen), -1.0, 1.0);
     const VisibleDisk disk =
         DiskOverHorizon(mu_s, shared::HorizonCosine(altitude, radius_m_), under_.radius_rad);
-    if (disk.fraction <= 0.0) return BandLight(air_.bands());
+    if (disk.fraction <= 0.0) return Spectrum(air_.bands());
     return static_cast<float>(disk.fraction) * air_.BeamLeft(altitude, disk.mu_s_effective);
   }
 
@@ -139,9 +139,9 @@ class LayerMarch {
     const double altitude = AltitudeOverSphere(point, radius_m_);
     const double slant =
         layer_.optics().extinction_per_m[0] * layer_.ColumnToSpace(point, under_.light.seen);
-    const BandLight sun = SunInAir(point);
-    BandLight all(sun.count), none(sun.count);
-    std::fill_n(all.value.begin(), all.count, 1.0F);
+    const Spectrum sun = SunInAir(point);
+    Spectrum all(sun.size()), none(sun.size());
+    std::ranges::fill(all.values(), 1.0F);
     const LayerLight::Scattered glow = light_.At(look, altitude, none, all, slant);
     const auto direct = static_cast<float>(std::exp(-slant));
     const auto with_peak = static_cast<float>(std::exp(-light_.peak_scale() * slant));
@@ -150,7 +150,7 @@ class LayerMarch {
     ViewRay ray{eye_.z, direction.z, 0.0, 0.0};
     ray.length_m = step.middle_m;
     ray.passes_ground = true;
-    const BandLight left = scattered * air_.single_scattering().TransmittanceAlong(ray);
+    const Spectrum left = scattered * air_.single_scattering().TransmittanceAlong(ray);
     return {InFloats(direct * (left * sun)), InFloats((with_peak - direct) * (left * sun)),
             InFloats(left * glow.of_sun), InFloats(left * glow.of_sky)};
   }

@@ -19,13 +19,13 @@ class LitLayer::OnOneRay final : public MediumOnRay {
   OnOneRay(const LitLayer& lit, const glm::dvec3& direction)
       : lit_(lit), look_(lit.light_.LookAlong(direction)) {}
 
-  void AddSource(const LightOnPoint& light, double density, BandLight& sum) const override {
-    const BandLight lit = light.LitThrough(light.depth);
+  void AddSource(const LightOnPoint& light, double density, Spectrum& sum) const override {
+    const Spectrum lit = light.LitThrough(light.depth);
     const LayerLight::Scattered scattered = lit_.light_.At(
         look_, light.altitude_m, lit * light.in_air, lit, lit_.DepthToSun(light.point));
     const auto per_m = static_cast<float>(density * lit_.layer_.optics().scattering_per_m[0]);
-    const BandLight& irradiance = lit_.sources_.light.irradiance;
-    for (std::size_t band = 0; band < sum.count; ++band) {
+    const Spectrum& irradiance = lit_.sources_.light.irradiance;
+    for (std::size_t band = 0; band < sum.size(); ++band) {
       sum[band] += per_m * irradiance[band] *
                    (scattered.of_sun[band] + light.sky_left * scattered.of_sky[band]);
     }
@@ -42,9 +42,9 @@ std::unique_ptr<const MediumOnRay> LitLayer::OnRay(const glm::dvec3& direction) 
 
 // The width of the disk does not matter for a layer.
 void LitLayer::AddDepthToLight(const glm::dvec3& point, const glm::dvec3& /*to_disk*/,
-                               Bands<double>& depth) const {
+                               SpectrumOf<double>& depth) const {
   const double of_layer = light_.peak_scale() * DepthToSun(point);
-  for (std::size_t band = 0; band < depth.count; ++band) depth[band] += of_layer;
+  for (std::size_t band = 0; band < depth.size(); ++band) depth[band] += of_layer;
 }
 
 float LitLayer::SkyLeft(double altitude_m) const { return light_.SkyLeft(altitude_m); }

@@ -19,7 +19,7 @@ class LitLayer final : public LitMedium {
   [[nodiscard]] std::unique_ptr<const MediumOnRay> OnRay(
       const glm::dvec3& direction) const override;
   void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
-                       Bands<double>& depth) const override;
+                       SpectrumOf<double>& depth) const override;
   [[nodiscard]] float SkyLeft(double altitude_m) const override;
   void ChangeSky(double altitude_m, double cos_up, SkyThroughMedia& sky) const override;
 

@@ -29,20 +29,20 @@ struct MediaSources {
 
   [[nodiscard]] std::size_t bands() const { return media.bands(); }
   /// Returns the transmittance of the air for sunlight at a point.
-  [[nodiscard]] BandLight SunInAir(const glm::dvec3& point) const;
+  [[nodiscard]] Spectrum SunInAir(const glm::dvec3& point) const;
 };
 
 /// Light of sun and sky on its way to a point of a medium.
 struct LightOnPoint {
   const glm::dvec3& point;
   double altitude_m;
-  const BandLight& in_air;     // transmittance of the air for sunlight
-  float past_terrain;          // fraction of the sunlight that terrain does not stop
-  const Bands<double>& depth;  // optical depth of the other media towards the sun
-  float sky_left;              // transmittance of the other layers for skylight
+  const Spectrum& in_air;           // transmittance of the air for sunlight
+  float past_terrain;               // fraction of the sunlight that terrain does not stop
+  const SpectrumOf<double>& depth;  // optical depth of the other media towards the sun
+  float sky_left;                   // transmittance of the other layers for skylight
 
   /// Returns the transmittance of terrain and of an optical depth for sunlight, without the air.
-  [[nodiscard]] BandLight LitThrough(const Bands<double>& all_media) const;
+  [[nodiscard]] Spectrum LitThrough(const SpectrumOf<double>& all_media) const;
 };
 
 /// Light of a medium along one ray.
@@ -56,13 +56,13 @@ class MediumOnRay {
   /// Adds the light that the medium sends to the ray's origin [W m^-2 sr^-1 nm^-1 per metre],
   /// without attenuation in between.
   /// @param density  at the point, > 0.
-  virtual void AddSource(const LightOnPoint& light, double density, BandLight& sum) const = 0;
+  virtual void AddSource(const LightOnPoint& light, double density, Spectrum& sum) const = 0;
 };
 
 /// Light of the sky on a surface inside or above layers.
 struct SkyThroughMedia {
-  BandLight left;   // fraction of the irradiance from a clear sky
-  BandLight added;  // irradiance from the media, per unit solar irradiance [1]
+  Spectrum left;   // fraction of the irradiance from a clear sky
+  Spectrum added;  // irradiance from the media, per unit solar irradiance [1]
 };
 
 /// The light in one medium for one position of the sun. Immutable; safe to use from many threads.
@@ -84,7 +84,7 @@ class LitMedium {
   /// scattered.
   /// @param to_disk  towards the light: the centre of its disk, or a point of it for soft shadows.
   virtual void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
-                               Bands<double>& depth) const = 0;
+                               SpectrumOf<double>& depth) const = 0;
   /// Returns the transmittance of a layer for skylight from above to an altitude. It includes the
   /// light in the forward peak.
   [[nodiscard]] virtual float SkyLeft(double /*altitude_m*/) const { return 1.0F; }

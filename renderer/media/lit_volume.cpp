@@ -51,7 +51,7 @@ std::vector<VolumeGrid> Tabulated(const std::array<int, 3>& size, std::size_t ba
     for (std::size_t x = 0; x < columns; ++x) {
       const glm::dvec3 unit((static_cast<double>(x) + 0.5) / size[0],
                             (row % size[1] + 0.5) / size[1], (row / size[1] + 0.5) / size[2]);
-      const Bands<double> here = values_at(unit);
+      const SpectrumOf<double> here = values_at(unit);
       for (std::size_t band = 0; band < bands; ++band)
         values[band][static_cast<std::size_t>(row) * columns + x] = static_cast<float>(here[band]);
     }
@@ -61,16 +61,16 @@ std::vector<VolumeGrid> Tabulated(const std::array<int, 3>& size, std::size_t ba
   return grids;
 }
 
-void AddDepth(const LocalMedium& medium, double column, Bands<double>& depth) {
+void AddDepth(const LocalMedium& medium, double column, SpectrumOf<double>& depth) {
   if (column == 0.0) return;
-  for (std::size_t band = 0; band < depth.count; ++band) {
+  for (std::size_t band = 0; band < depth.size(); ++band) {
     depth[band] += column * medium.optics().extinction_per_m[band];
   }
 }
 
-BandLight InFloats(const Bands<double>& values) {
-  BandLight light(values.count);
-  for (std::size_t band = 0; band < values.count; ++band)
+Spectrum InFloats(const SpectrumOf<double>& values) {
+  Spectrum light(values.size());
+  for (std::size_t band = 0; band < values.size(); ++band)
     light[band] = static_cast<float>(values[band]);
   return light;
 }
@@ -83,7 +83,7 @@ LitVolume::LitVolume(const LocalVolume& volume, const MediaSources& sources)
       scattering_per_m_(InFloats(volume.optics().scattering_per_m)),
       emission_per_m_(sources.emission == MediaEmission::kOn
                           ? InFloats(volume.optics().emission_per_m)
-                          : BandLight(sources.bands())),
+                          : Spectrum(sources.bands())),
       chi_(LegendreCoefficients(volume.optics().phase,
                                 sources.air.multiple_scattering().options().degree)),
       sky_(Sky()),
@@ -107,7 +107,7 @@ std::optional<VolumeGrid> LitVolume::SunColumns() const {
   std::array<int, 3> size = volume_.grid()->size();
   for (int& side : size) side = std::min(side, kMost);
   const auto column = [&](const glm::dvec3& unit) {
-    Bands<double> of_all(1);
+    SpectrumOf<double> of_all(1);
     of_all[0] =
         volume_.Column(volume_.FrameFromUnit(unit), sources_.light.direction.seen, kEndless);
     return of_all;
@@ -147,13 +147,13 @@ LitVolume::VolumeLamp LitVolume::LampOf(std::uint32_t number) const {
   const auto depth_at = [&](const glm::dvec3& unit) {
     const glm::dvec3 point = volume_.FrameFromUnit(unit);
     const double distance = std::max(glm::length(lamp - point), 1e-9);
-    Bands<double> depth = sources_.lamps->DepthTo(number, point);
+    SpectrumOf<double> depth = sources_.lamps->DepthTo(number, point);
     for (const auto& medium : sources_.media.all()) {
       const bool is_exact = medium.get() == &volume_ && volume_.grid() == nullptr;
       if (medium->IsLayer() || is_exact) continue;
       AddDepth(*medium, medium->Column(point, (lamp - point) / distance, distance), depth);
     }
-    for (std::size_t band = 0; band < depth.count; ++band)
+    for (std::size_t band = 0; band < depth.size(); ++band)
       depth[band] = std::min(depth[band], kDark);
     return depth;
   };
@@ -166,34 +166,34 @@ std::vector<VolumeGrid> LitVolume::SkyLeft(const SkyMoments& sky) const {
   const LebedevRule& rule = Lebedev();
   const std::vector<double> all(
       static_cast<std::size_t>(sources_.air.multiple_scattering().options().degree) + 1, 1.0);
-  std::array<BandLight, 26> weight;
-  BandLight sum(sources_.bands());
+  std::array<Spectrum, 26> weight;
+  Spectrum sum(sources_.bands());
   for (std::size_t i = 0; i < weight.size(); ++i) {
     weight[i] = static_cast<float>(rule.weight[i]) * sky.Towards(rule.direction[i], all)[1];
     sum = sum + weight[i];
   }
-  const bool is_dark = sum == BandLight(sources_.bands());
+  const bool is_dark = sum == Spectrum(sources_.bands());
   return Tabulated(kSize, sources_.bands(), [&](const glm::dvec3& unit) {
-    Bands<double> mean(sources_.bands());
+    SpectrumOf<double> mean(sources_.bands());
     if (is_dark) return mean;
     const glm::dvec3 point = volume_.FrameFromUnit(unit);
     for (std::size_t i = 0; i < weight.size(); ++i) {
-      Bands<double> depth(sources_.bands());
+      SpectrumOf<double> depth(sources_.bands());
       for (const auto& medium : sources_.media.all()) {
         if (medium->IsLayer()) continue;
         AddDepth(*medium, medium->Column(point, rule.direction[i], kEndless), depth);
       }
-      for (std::size_t band = 0; band < mean.count; ++band)
+      for (std::size_t band = 0; band < mean.size(); ++band)
         mean[band] += static_cast<double>(weight[i][band]) * std::exp(-depth[band]);
     }
-    for (std::size_t band = 0; band < mean.count; ++band)
+    for (std::size_t band = 0; band < mean.size(); ++band)
       mean[band] = sum[band] > 0.0F ? mean[band] / static_cast<double>(sum[band]) : 0.0;
     return mean;
   });
 }
 
 void LitVolume::AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
-                                Bands<double>& depth) const {
+                                SpectrumOf<double>& depth) const {
   if (sun_column_ && to_disk == sources_.light.direction.seen) {
     const glm::dvec3 off = volume_.UnitFromFrame(point) - 0.5;
     if (std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) <= 0.5)
@@ -214,7 +214,7 @@ void LitVolume::AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
 }
 
 void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& point,
-                        const glm::dvec3& direction, double density, BandLight& sum) const {
+                        const glm::dvec3& direction, double density, Spectrum& sum) const {
   const LampLight::SceneLamp lamp = sources_.lamps->At(seen.number);
   const glm::dvec3 way = lamp.lamp.position_m - point;
   const double distance = std::max({glm::length(way), lamp.lamp.radius_m, 1e-3});
@@ -225,7 +225,7 @@ void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& point,
   if (per_area == 0.0) return;
   const glm::dvec3 unit = volume_.UnitFromFrame(point);
   const double own = volume_.grid() != nullptr ? 0.0 : volume_.Column(point, towards, distance);
-  for (std::size_t band = 0; band < sum.count; ++band) {
+  for (std::size_t band = 0; band < sum.size(); ++band) {
     const double depth = own * optics.extinction_per_m[band] + seen.depth[band].At(unit);
     sum[band] += lamp.intensity[band] *
                  static_cast<float>(per_area * optics.scattering_per_m[band] * std::exp(-depth));
@@ -241,14 +241,14 @@ class LitVolume::OnOneRay final : public MediumOnRay {
                                         glm::dot(direction, lit.sources_.light.direction.seen)))),
         sky_(lit.sky_.Towards(direction, lit.chi_)) {}
 
-  void AddSource(const LightOnPoint& light, double density, BandLight& sum) const override {
-    Bands<double> depth = light.depth;
+  void AddSource(const LightOnPoint& light, double density, Spectrum& sum) const override {
+    SpectrumOf<double> depth = light.depth;
     lit_.AddDepthToLight(light.point, lit_.sources_.light.direction.seen, depth);
-    const BandLight sun = light.LitThrough(depth) * light.in_air;
-    const BandLight sky = lit_.sky_.At(sky_, light.altitude_m);
+    const Spectrum sun = light.LitThrough(depth) * light.in_air;
+    const Spectrum sky = lit_.sky_.At(sky_, light.altitude_m);
     const glm::dvec3 unit = lit_.volume_.UnitFromFrame(light.point);
-    const BandLight& irradiance = lit_.sources_.light.irradiance;
-    for (std::size_t band = 0; band < sum.count; ++band) {
+    const Spectrum& irradiance = lit_.sources_.light.irradiance;
+    for (std::size_t band = 0; band < sum.size(); ++band) {
       const float arriving =
           phase_ * sun[band] +
           light.sky_left * sky[band] * static_cast<float>(lit_.sky_left_[band].At(unit));
@@ -264,7 +264,7 @@ class LitVolume::OnOneRay final : public MediumOnRay {
   const LitVolume& lit_;
   glm::dvec3 direction_;
   float phase_;
-  std::vector<BandLight> sky_;
+  std::vector<Spectrum> sky_;
 };
 
 std::unique_ptr<const MediumOnRay> LitVolume::OnRay(const glm::dvec3& direction) const {

@@ -36,7 +36,7 @@ class LitVolume final : public LitMedium {
                std::vector<double>& cuts_m) const override;
   /// Inside a gridded volume, the depth towards the centre of the disk is that of sun_column_.
   void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
-                       Bands<double>& depth) const override;
+                       SpectrumOf<double>& depth) const override;
 
  private:
   class OnOneRay;
@@ -53,11 +53,11 @@ class LitVolume final : public LitMedium {
   [[nodiscard]] VolumeLamp LampOf(std::uint32_t number) const;
   /// Adds the light of a lamp that the volume scatters along a direction.
   void AddLamp(const VolumeLamp& seen, const glm::dvec3& point, const glm::dvec3& direction,
-               double density, BandLight& sum) const;
+               double density, Spectrum& sum) const;
 
   const LocalVolume& volume_;
   const MediaSources& sources_;
-  BandLight scattering_per_m_, emission_per_m_;
+  Spectrum scattering_per_m_, emission_per_m_;
   std::vector<double> chi_;
   SkyMoments sky_;
   std::optional<VolumeGrid> sun_column_;  // [m], of gridded volumes

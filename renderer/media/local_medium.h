@@ -35,9 +35,9 @@ struct MediaSources;
 
 /// Optical properties at density 1, band by band.
 struct MediumOptics {
-  Bands<double> extinction_per_m;
-  Bands<double> scattering_per_m;
-  Bands<double> emission_per_m;  // W m^-2 sr^-1 nm^-1 per metre
+  SpectrumOf<double> extinction_per_m;
+  SpectrumOf<double> scattering_per_m;
+  SpectrumOf<double> emission_per_m;  // W m^-2 sr^-1 nm^-1 per metre
   PhaseFunction phase;
 };
 

@@ -68,8 +68,8 @@ double ValueAt(const std::vector<double>& values, std::size_t band) {
 
 MediumOptics OpticsOf(const Volume& volume, const std::vector<double>& wavelengths_nm) {
   const std::size_t bands = wavelengths_nm.size();
-  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands),
-                      volume.phase};
+  MediumOptics optics{SpectrumOf<double>(bands), SpectrumOf<double>(bands),
+                      SpectrumOf<double>(bands), volume.phase};
   for (std::size_t band = 0; band < bands; ++band) {
     const double extinction = ValueAt(volume.extinction_per_m, band);
     const double albedo = ValueAt(volume.albedo, band);

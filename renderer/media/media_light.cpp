@@ -34,13 +34,13 @@ class AirOnRay {
 
   struct Knot {
     bool is_known = false;
-    BandLight depth;  // of the air, from the origin
-    BandLight sun;    // in the air, without terrain and media
+    Spectrum depth;  // of the air, from the origin
+    Spectrum sun;    // in the air, without terrain and media
   };
 
   /// Transmittance of the air over a distance, and sunlight at its end.
   struct Light {
-    BandLight left, sun;
+    Spectrum left, sun;
   };
   [[nodiscard]] Light At(double distance_m) {
     if (distance_m < begin_m_ || distance_m > end_m_) {
@@ -61,8 +61,8 @@ class AirOnRay {
     return std::clamp(glm::dot(direction_, up), -1.0, 1.0);
   }
   [[nodiscard]] Light Between(const Knot& a, const Knot& b, float share) const {
-    Light light{BandLight(sources_.bands()), BandLight(sources_.bands())};
-    for (std::size_t band = 0; band < light.left.count; ++band) {
+    Light light{Spectrum(sources_.bands()), Spectrum(sources_.bands())};
+    for (std::size_t band = 0; band < light.left.size(); ++band) {
       light.left[band] = std::exp(-((1.0F - share) * a.depth[band] + share * b.depth[band]));
       light.sun[band] = (1.0F - share) * a.sun[band] + share * b.sun[band];
     }
@@ -72,7 +72,7 @@ class AirOnRay {
     ViewRay ray = ray_;
     ray.length_m = distance_m;
     ray.passes_ground = true;
-    const BandLight none(sources_.bands());
+    const Spectrum none(sources_.bands());
     return {true,
             distance_m <= begin_m_ ? none : sources_.air.single_scattering().OpticalDepthAlong(ray),
             sources_.SunInAir(origin_ + distance_m * direction_)};
@@ -103,16 +103,16 @@ class Sources {
         sunlit_(sunlit),
         on_ray_(lit.size()) {}
 
-  BandLight operator()(double distance_m, const glm::dvec3& point,
-                       std::span<const double> densities) {
+  Spectrum operator()(double distance_m, const glm::dvec3& point,
+                      std::span<const double> densities) {
     const AirOnRay::Light air = air_.At(distance_m);
     const double altitude_m = sources_.geometry.AltitudeOf(point);
     const float past_terrain =
         sunlit_ != nullptr ? static_cast<float>(SunlightAt(*sunlit_, distance_m)) : 1.0F;
-    BandLight sum(air.sun.count);
+    Spectrum sum(air.sun.size());
     for (std::size_t m = 0; m < lit_.size(); ++m) {
       if (densities[m] <= 0.0) continue;
-      const Bands<double> depth = DepthOfOthers(m, point);
+      const SpectrumOf<double> depth = DepthOfOthers(m, point);
       MediumAt(m).AddSource(
           {point, altitude_m, air.sun, past_terrain, depth, SkyPastOthers(m, altitude_m)},
           densities[m], sum);
@@ -122,8 +122,8 @@ class Sources {
 
  private:
   /// Return what the media other than `m` do to the light of the sun and of the sky.
-  [[nodiscard]] Bands<double> DepthOfOthers(std::size_t m, const glm::dvec3& point) const {
-    Bands<double> depth(sources_.bands());
+  [[nodiscard]] SpectrumOf<double> DepthOfOthers(std::size_t m, const glm::dvec3& point) const {
+    SpectrumOf<double> depth(sources_.bands());
     for (std::size_t other = 0; other < lit_.size(); ++other) {
       if (other != m) lit_[other]->AddDepthToLight(point, sources_.light.direction.seen, depth);
     }
@@ -180,19 +180,19 @@ MarchedLight MediaLight::Along(const glm::dvec3& origin, const glm::dvec3& direc
   return MarchMedia(state_->media, origin, direction, length_m, std::ref(sources), tolerance, cuts);
 }
 
-BandLight MediaLight::BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk) const {
-  BandLight left(state_->media.bands());
-  Bands<double> depth(left.count);
+Spectrum MediaLight::BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk) const {
+  Spectrum left(state_->media.bands());
+  SpectrumOf<double> depth(left.size());
   for (const auto& medium : state_->lit) medium->AddDepthToLight(point, to_disk, depth);
-  for (std::size_t band = 0; band < left.count; ++band)
+  for (std::size_t band = 0; band < left.size(); ++band)
     left[band] = static_cast<float>(std::exp(-depth[band]));
   return left;
 }
 
 SkyThroughMedia MediaLight::SkyOnSurface(double altitude_m, double cos_up) const {
   const std::size_t bands = state_->media.bands();
-  SkyThroughMedia sky{BandLight(bands), BandLight(bands)};
-  std::fill_n(sky.left.value.begin(), bands, 1.0F);
+  SkyThroughMedia sky{Spectrum(bands), Spectrum(bands)};
+  std::fill_n(sky.left.values().begin(), bands, 1.0F);
   for (const auto& medium : state_->lit) medium->ChangeSky(altitude_m, cos_up, sky);
   return sky;
 }

@@ -42,7 +42,7 @@ class MediaLight {
 
   /// Returns the transmittance of all media for sunlight that arrives at a point of the ground or the
   /// air: their shadow there. @param to_disk  as in LitMedium::AddDepthToLight.
-  [[nodiscard]] BandLight BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk) const;
+  [[nodiscard]] Spectrum BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk) const;
 
   /// Returns the skylight on a surface.
   /// @param cos_up  between the surface's normal and the vertical.

@@ -58,13 +58,13 @@ const KronrodRule& Rule() {
 
 /// Optical depths of all media, and of the bodies among them.
 struct MediaDepth {
-  Bands<double> all, bodies;
+  SpectrumOf<double> all, bodies;
 };
 
 /// Contribution of a panel, as if it began at the eye.
 struct MarchPanel {
   double begin_m = 0.0, end_m = 0.0;
-  Bands<double> light, mean, mean_past_bodies;
+  SpectrumOf<double> light, mean, mean_past_bodies;
   MediaDepth depth;
   double light_error = 0.0;  // of the worst band, absolute
   double depth_error = 0.0;
@@ -136,7 +136,7 @@ class March {
   }
 
   [[nodiscard]] bool IsOpaque() const {
-    return std::all_of(passed_.value.begin(), passed_.value.begin() + static_cast<int>(bands_),
+    return std::all_of(passed_.values().begin(), passed_.values().end(),
                        [](double depth) { return depth > kOpaque; });
   }
 
@@ -194,12 +194,12 @@ class March {
     MarchPanel panel;
     panel.begin_m = begin_m;
     panel.end_m = end_m;
-    panel.light = panel.mean = panel.mean_past_bodies = Bands<double>(bands_);
-    Bands<double> gauss_light(bands_);
+    panel.light = panel.mean = panel.mean_past_bodies = SpectrumOf<double>(bands_);
+    SpectrumOf<double> gauss_light(bands_);
     for (std::size_t i = 0; i < kNodes; ++i) {
       const MediaDepth depth = DepthUpto(rule.upto[i], length, count);
-      const BandLight source = source_(begin_m + length * rule.node[i], point[i],
-                                       std::span(densities_).subspan(i * count, count));
+      const Spectrum source = source_(begin_m + length * rule.node[i], point[i],
+                                      std::span(densities_).subspan(i * count, count));
       ++nodes_;
       for (std::size_t band = 0; band < bands_; ++band) {
         const double left = std::exp(-depth.all[band] - passed_[band]);
@@ -227,12 +227,12 @@ class March {
   // Returns the optical depths with the weights of an integral over densities_.
   [[nodiscard]] MediaDepth DepthUpto(const std::array<double, kNodes>& weights, double length,
                                      std::size_t count) const {
-    MediaDepth depth{Bands<double>(bands_), Bands<double>(bands_)};
+    MediaDepth depth{SpectrumOf<double>(bands_), SpectrumOf<double>(bands_)};
     for (std::size_t m = 0; m < count; ++m) {
       if (largest_[m] == 0.0) continue;
       double column = 0.0;
       for (std::size_t j = 0; j < kNodes; ++j) column += weights[j] * densities_[j * count + m];
-      const Bands<double>& extinction_per_m = media_.all()[m]->optics().extinction_per_m;
+      const SpectrumOf<double>& extinction_per_m = media_.all()[m]->optics().extinction_per_m;
       for (std::size_t band = 0; band < bands_; ++band) {
         const double of_this = length * column * extinction_per_m[band];
         depth.all[band] += of_this;
@@ -243,8 +243,8 @@ class March {
   }
 
   void Add(const MarchPanel& panel) {
-    MarchedPiece piece{panel.begin_m,     panel.end_m,       BandLight(bands_),
-                       BandLight(bands_), BandLight(bands_), BandLight(bands_)};
+    MarchedPiece piece{panel.begin_m,    panel.end_m,      Spectrum(bands_),
+                       Spectrum(bands_), Spectrum(bands_), Spectrum(bands_)};
     for (std::size_t band = 0; band < bands_; ++band) {
       light_[band] += panel.light[band];
       passed_[band] += panel.depth.all[band];
@@ -261,7 +261,7 @@ class March {
 
   [[nodiscard]] MarchedLight Result() {
     MarchedLight result;
-    result.radiance = result.transmittance = BandLight(bands_);
+    result.radiance = result.transmittance = Spectrum(bands_);
     for (std::size_t band = 0; band < bands_; ++band) {
       result.radiance[band] = static_cast<float>(light_[band]);
       result.transmittance[band] = static_cast<float>(std::exp(-passed_[band]));
@@ -283,7 +283,7 @@ class March {
   std::vector<double> cuts_;
   std::vector<double> largest_;    // densities of the current piece; 0: not present
   std::vector<double> densities_;  // [node][medium]
-  Bands<double> passed_, passed_bodies_, light_;
+  SpectrumOf<double> passed_, passed_bodies_, light_;
   double whole_m_ = 0.0, most_light_ = 0.0, error_ = 0.0;
   std::size_t nodes_ = 0;
   std::vector<MarchedPiece> done_;
@@ -292,21 +292,21 @@ class March {
 /// A stretch of media within which light is assumed to increase linearly.
 struct Stretch {
   double begin_m, end_m;
-  BandLight first, last, weighted;  // transmittance at the ends; its integral
+  Spectrum first, last, weighted;  // transmittance at the ends; its integral
 };
 
 void Extend(const MarchedPiece& piece, Behind behind, std::vector<Stretch>& stretches) {
   constexpr float kMostFall = 0.15F;
   const bool without_layers = behind == Behind::kBodies;
-  const BandLight& after = without_layers ? piece.past_bodies : piece.transmittance;
-  const BandLight& mean = without_layers ? piece.mean_past_bodies : piece.mean_transmittance;
+  const Spectrum& after = without_layers ? piece.past_bodies : piece.transmittance;
+  const Spectrum& mean = without_layers ? piece.mean_past_bodies : piece.mean_transmittance;
   const auto length = static_cast<float>(piece.end_m - piece.begin_m);
   if (!stretches.empty()) {
     Stretch& open = stretches.back();
     const double gap = piece.begin_m - open.end_m;
     if (gap <= 0.1 * (open.end_m - open.begin_m)) {
       float fall = 0.0F;
-      for (std::size_t band = 0; band < after.count; ++band) {
+      for (std::size_t band = 0; band < after.size(); ++band) {
         fall = std::max(fall, open.first[band] - after[band]);
       }
       if (fall <= kMostFall) {
@@ -317,8 +317,8 @@ void Extend(const MarchedPiece& piece, Behind behind, std::vector<Stretch>& stre
       }
     }
   }
-  BandLight first(after.count);
-  std::fill_n(first.value.begin(), first.count, 1.0F);
+  Spectrum first(after.size());
+  std::ranges::fill(first.values(), 1.0F);
   if (!stretches.empty()) first = stretches.back().last;
   stretches.push_back({piece.begin_m, piece.end_m, first, after, length * mean});
 }
@@ -331,15 +331,15 @@ MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
   return March(media, origin, direction, length_m, source, tolerance, cuts_m).Run();
 }
 
-BandLight DimmedByMedia(const std::vector<MarchedPiece>& pieces,
-                        const std::function<BandLight(double)>& upto, const BandLight& whole,
-                        Behind behind) {
+Spectrum DimmedByMedia(const std::vector<MarchedPiece>& pieces,
+                       const std::function<Spectrum(double)>& upto, const Spectrum& whole,
+                       Behind behind) {
   std::vector<Stretch> stretches;
   for (const MarchedPiece& piece : pieces) Extend(piece, behind, stretches);
   if (stretches.empty()) return whole;
-  BandLight sum(whole.count), before(whole.count);
-  const auto add = [&](const BandLight& factor, const BandLight& reached) {
-    for (std::size_t band = 0; band < sum.count; ++band) {
+  Spectrum sum(whole.size()), before(whole.size());
+  const auto add = [&](const Spectrum& factor, const Spectrum& reached) {
+    for (std::size_t band = 0; band < sum.size(); ++band) {
       sum[band] += factor[band] * std::max(reached[band] - before[band], 0.0F);
       before[band] = std::max(before[band], reached[band]);
     }
@@ -353,10 +353,10 @@ BandLight DimmedByMedia(const std::vector<MarchedPiece>& pieces,
   return sum;
 }
 
-BandLight LeftByBodies(const std::vector<MarchedPiece>& pieces, double distance_m,
-                       std::size_t bands) {
-  BandLight left(bands);
-  std::fill_n(left.value.begin(), bands, 1.0F);
+Spectrum LeftByBodies(const std::vector<MarchedPiece>& pieces, double distance_m,
+                      std::size_t bands) {
+  Spectrum left(bands);
+  std::fill_n(left.values().begin(), bands, 1.0F);
   for (const MarchedPiece& piece : pieces) {
     if (piece.begin_m >= distance_m) break;
     left = piece.past_bodies;

@@ -27,23 +27,23 @@ namespace alpenglow::renderer {
 struct MarchedPiece {
   double begin_m, end_m;
   // Transmittance for light from the end, and its mean over the piece:
-  BandLight transmittance, mean_transmittance;
+  Spectrum transmittance, mean_transmittance;
   // Transmittance of bodies alone, without layers, and its mean:
-  BandLight past_bodies, mean_past_bodies;
+  Spectrum past_bodies, mean_past_bodies;
 };
 
 struct MarchedLight {
-  BandLight radiance;       // W m^-2 sr^-1 nm^-1
-  BandLight transmittance;  // of all media; values below 1e-6 in every band are not resolved
-  double error = 0.0;       // estimate, relative to the radiance of the brightest band
-  std::size_t nodes = 0;    // number of evaluations of the sources
+  Spectrum radiance;       // W m^-2 sr^-1 nm^-1
+  Spectrum transmittance;  // of all media; values below 1e-6 in every band are not resolved
+  double error = 0.0;      // estimate, relative to the radiance of the brightest band
+  std::size_t nodes = 0;   // number of evaluations of the sources
   std::vector<MarchedPiece> pieces;
 };
 
 /// Returns the light that media of these densities send towards the origin at a point [W m^-2
 /// sr^-1 nm^-1 per metre], without attenuation by media in between.
-using MediaSource = std::function<BandLight(double distance_m, const glm::dvec3& point,
-                                            std::span<const double> densities)>;
+using MediaSource = std::function<Spectrum(double distance_m, const glm::dvec3& point,
+                                           std::span<const double> densities)>;
 
 inline constexpr double kMarchTolerance = 2e-3;
 
@@ -67,12 +67,12 @@ enum class Behind { kAll, kBodies };
 /// of media over which transmittance falls by 0.15 at most, light is assumed to increase linearly.
 /// @param upto  light of the air up to a distance, increasing.
 /// @param whole  of the whole ray.
-[[nodiscard]] BandLight DimmedByMedia(const std::vector<MarchedPiece>& pieces,
-                                      const std::function<BandLight(double)>& upto,
-                                      const BandLight& whole, Behind behind);
+[[nodiscard]] Spectrum DimmedByMedia(const std::vector<MarchedPiece>& pieces,
+                                     const std::function<Spectrum(double)>& upto,
+                                     const Spectrum& whole, Behind behind);
 
 /// Returns the transmittance of bodies over a distance, up to the ends of pieces.
-[[nodiscard]] BandLight LeftByBodies(const std::vector<MarchedPiece>& pieces, double distance_m,
-                                     std::size_t bands);
+[[nodiscard]] Spectrum LeftByBodies(const std::vector<MarchedPiece>& pieces, double distance_m,
+                                    std::size_t bands);
 
 }  // namespace alpenglow::renderer

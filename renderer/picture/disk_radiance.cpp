@@ -29,16 +29,16 @@ std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& 
 
 /// Returns the radiance of the refracted disk: each band of the disk is lifted by its own
 /// refraction, and attenuated by the air along the bent ray.
-BandLight RefractedSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
-                           const Lighting& light, const RefractedViewRays& bent,
-                           const Medium& medium) {
-  BandLight disk(light.source.irradiance.count);
+Spectrum RefractedSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
+                          const Lighting& light, const RefractedViewRays& bent,
+                          const Medium& medium) {
+  Spectrum disk(light.source.irradiance.size());
   // The refracted disk is not wider than a circular one.
   if (glm::length(direction - light.source.direction.seen) > 2.0 * light.source.radius_rad)
     return disk;
   const double elevation = bent.ElevationOf(direction);
   const double per_sr = 1.0 / DiskSolidAngle(light.source.radius_rad);
-  for (std::size_t band = 0; band < disk.count; ++band) {
+  for (std::size_t band = 0; band < disk.size(); ++band) {
     const auto rho =
         PlaceOnSun(bent.TrueDirection(direction, band), bent.to_sun, bent.to_moon, light);
     if (!rho) continue;
@@ -74,16 +74,16 @@ double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm:
 }
 
 /// Returns the radiance of the refracted moon (see RefractedSunDisk).
-BandLight RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through,
-                        const Lighting& light, const RefractedViewRays& bent) {
-  BandLight seen(light.source.irradiance.count);
+Spectrum RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through,
+                       const Lighting& light, const RefractedViewRays& bent) {
+  Spectrum seen(light.source.irradiance.size());
   // Neither the refracted disk nor its trail is wider than the unrefracted one.
   const double widest = 2.0 * light.moon->radius_rad + glm::length(light.moon_turn);
   if (glm::length(direction - light.moon->direction.seen) > widest) return seen;
   MoonDisk moon = *light.moon;
   moon.direction.seen = bent.to_moon;
   const double elevation = bent.ElevationOf(direction);
-  for (std::size_t band = 0; band < seen.count; ++band) {
+  for (std::size_t band = 0; band < seen.size(); ++band) {
     const double radiance =
         MeanMoonRadiance(moon, light.moon_turn, bent.TrueDirection(direction, band));
     const double left = std::exp(-bent.view.MoreOpticalDepth(elevation, band));
@@ -95,31 +95,31 @@ BandLight RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through,
 
 }  // namespace
 
-BandLight SunDiskRadiance(const FrameContext& frame, const glm::dvec3& direction,
-                          const AirAlongRay& through) {
+Spectrum SunDiskRadiance(const FrameContext& frame, const glm::dvec3& direction,
+                         const AirAlongRay& through) {
   const Medium& medium = frame.scene().medium();
   const Lighting& light = frame.light();
   if (frame.bent()) return RefractedSunDisk(direction, through, light, *frame.bent(), medium);
   const glm::dvec3& to_moon = light.moon ? light.moon->direction.seen : light.source.direction.seen;
   const auto rho = PlaceOnSun(direction, light.source.direction.seen, to_moon, light);
-  if (!rho) return BandLight(light.source.irradiance.count);
-  BandLight disk = (1.0F / static_cast<float>(DiskSolidAngle(light.source.radius_rad))) *
-                   (light.WholeSun() * through.transmittance);
-  for (std::size_t band = 0; band < disk.count; ++band) {
+  if (!rho) return Spectrum(light.source.irradiance.size());
+  Spectrum disk = (1.0F / static_cast<float>(DiskSolidAngle(light.source.radius_rad))) *
+                  (light.WholeSun() * through.transmittance);
+  for (std::size_t band = 0; band < disk.size(); ++band) {
     disk[band] *= static_cast<float>(LimbDarkening(*rho, medium.wavelengths_nm[band]));
   }
   return disk;
 }
 
-BandLight MoonDiskRadiance(const FrameContext& frame, const glm::dvec3& direction,
-                           const AirAlongRay& through) {
+Spectrum MoonDiskRadiance(const FrameContext& frame, const glm::dvec3& direction,
+                          const AirAlongRay& through) {
   const Lighting& light = frame.light();
   // During an eclipse, the earthshine of the moon would stand out, because the renderer has no
   // corona.
-  if (!light.moon || light.eclipse) return BandLight(light.source.irradiance.count);
+  if (!light.moon || light.eclipse) return Spectrum(light.source.irradiance.size());
   if (frame.bent()) return RefractedMoon(direction, through, light, *frame.bent());
   const double radiance = MeanMoonRadiance(*light.moon, light.moon_turn, direction);
-  if (radiance == 0.0) return BandLight(light.source.irradiance.count);
+  if (radiance == 0.0) return Spectrum(light.source.irradiance.size());
   return static_cast<float>(radiance) *
          (light.moon_colour * (light.source.irradiance * through.transmittance));
 }

@@ -14,12 +14,12 @@ namespace alpenglow::renderer {
 /// Returns the radiance of the sun's disk in a direction, W m^-2 sr^-1 nm^-1; 0 beside it and where
 /// the moon covers it.
 /// @param through  air in front of it.
-[[nodiscard]] BandLight SunDiskRadiance(const FrameContext& frame, const glm::dvec3& direction,
-                                        const AirAlongRay& through);
+[[nodiscard]] Spectrum SunDiskRadiance(const FrameContext& frame, const glm::dvec3& direction,
+                                       const AirAlongRay& through);
 
 /// Returns the radiance of the moon's disk in a direction, W m^-2 sr^-1 nm^-1, its mean while the
 /// shutter is open; 0 beside it and during an eclipse of the sun.
-[[nodiscard]] BandLight MoonDiskRadiance(const FrameContext& frame, const glm::dvec3& direction,
-                                         const AirAlongRay& through);
+[[nodiscard]] Spectrum MoonDiskRadiance(const FrameContext& frame, const glm::dvec3& direction,
+                                        const AirAlongRay& through);
 
 }  // namespace alpenglow::renderer

@@ -63,8 +63,8 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
   const Observer observer = ObserverOf(scene, camera_sample);
   Lighting sun = LightingAt(scene, observer);
   sun.effects = settings.effects;
-  BandLight by_sun(sun.source.irradiance.count);
-  std::fill_n(by_sun.value.begin(), by_sun.count, 1.0F);
+  Spectrum by_sun(sun.source.irradiance.size());
+  std::ranges::fill(by_sun.values(), 1.0F);
   lights_.push_back({std::move(sun), by_sun, std::make_shared<const TerrainSunlight>(), nullptr});
   if (Has(Effect::kRefraction)) refracted_ = RefractedViewRaysOf(*this, observer);
   if (Has(Effect::kShafts) && light().shows) {
@@ -114,9 +114,9 @@ void FrameContext::AddSmallDisks() {
 void FrameContext::LightNight() {
   if (Has(Effect::kNightSky)) sky_lights_.night = light().night;
   if (!Has(Effect::kMoonlight) || !light().moonlight) return;
-  FrameLight moon{light().By(*light().moonlight), BandLight(light().source.irradiance.count),
+  FrameLight moon{light().By(*light().moonlight), Spectrum(light().source.irradiance.size()),
                   std::make_shared<const TerrainSunlight>(), nullptr};
-  for (std::size_t band = 0; band < moon.by_sun.count; ++band)
+  for (std::size_t band = 0; band < moon.by_sun.size(); ++band)
     moon.by_sun[band] = moon.light.source.irradiance[band] / light().source.irradiance[band];
   if (Has(Effect::kShafts))
     moon.shadows = scene_->moonlight()

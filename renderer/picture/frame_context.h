@@ -27,7 +27,7 @@ namespace alpenglow::renderer {
 /// A distant light of a picture, with its shadows and its light in media.
 struct FrameLight {
   Lighting light;                                  // with this light as its sun
-  BandLight by_sun;                                // irradiance relative to the sun's
+  Spectrum by_sun;                                 // irradiance relative to the sun's
   std::shared_ptr<const TerrainSunlight> shadows;  // in the air
   std::shared_ptr<const MediaLight> media;         // null: no bodies, and only lamps light layers
 

@@ -16,12 +16,12 @@
 namespace alpenglow::renderer {
 namespace {
 
-LayerValues Rgb(const BandColour& colour, const BandLight& light) {
+LayerValues Rgb(const BandColour& colour, const Spectrum& light) {
   const auto rgb = colour.LinearSrgb(InDouble(light));
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
 
-template <BandLight Shaded::*kPart>
+template <Spectrum Shaded::*kPart>
 LayerValues LightOf(const BandColour& colour, const PixelSum& rays) {
   return Rgb(colour, rays.Mean(kPart));
 }
@@ -30,11 +30,11 @@ LayerValues LightOf(const BandColour& colour, const PixelSum& rays) {
 // 1]. Red light after a long path through air is more saturated than the red primary of sRGB: its
 // blue is negative, down to -0.002 beside a red of 0.1. A negative component is correct for light
 // (image.h). A negative factor would turn the light that it multiplies negative, so it is clamped.
-template <BandLight Shaded::*kPart>
+template <Spectrum Shaded::*kPart>
 LayerValues FactorOf(const BandColour& colour, const PixelSum& rays) {
-  const BandLight factor = rays.Mean(kPart);
-  BandLight sun(factor.count);
-  for (std::size_t band = 0; band < factor.count; ++band) {
+  const Spectrum factor = rays.Mean(kPart);
+  Spectrum sun(factor.size());
+  for (std::size_t band = 0; band < factor.size(); ++band) {
     sun[band] = static_cast<float>(SolarIrradiance(colour.wavelengths_nm()[band]));
   }
   const LayerValues white = Rgb(colour, sun);
@@ -56,13 +56,13 @@ LayerValues RayCountLayer(const BandColour&, const PixelSum& rays) {
   return {static_cast<float>(rays.rays)};
 }
 
-template <BandLight PolarisedLight::*kPart>
+template <Spectrum PolarisedLight::*kPart>
 LayerValues StokesOf(const BandColour& colour, const PixelSum& rays) {
   return Rgb(colour, (1.0F / static_cast<float>(rays.rays)) * (*rays.parts->polarised.*kPart));
 }
 
 LayerValues Polarisation(const BandColour& colour, const PixelSum& rays) {
-  const auto luminance = [&](const BandLight& light) { return colour.Xyz(InDouble(light))[1]; };
+  const auto luminance = [&](const Spectrum& light) { return colour.Xyz(InDouble(light))[1]; };
   const auto [degree, angle] =
       DegreeAndAngle(luminance(rays.radiance), luminance(rays.parts->polarised->q),
                      luminance(rays.parts->polarised->u));

@@ -57,10 +57,10 @@ enum class PictureLayer {
 
 /// One ray's contribution to a pixel.
 struct Shaded {
-  BandLight radiance;  // W m^-2 sr^-1 nm^-1
-  BandLight inscatter, transmittance, albedo;
-  BandLight lamps;    // part of `radiance` that comes from lamps
-  BandLight volumes;  // part of `radiance` that media scatter from sun and sky, or emit
+  Spectrum radiance;  // W m^-2 sr^-1 nm^-1
+  Spectrum inscatter, transmittance, albedo;
+  Spectrum lamps;    // part of `radiance` that comes from lamps
+  Spectrum volumes;  // part of `radiance` that media scatter from sun and sky, or emit
   /// Q and U of `radiance` in the axes of the picture; empty unless requested.
   std::optional<PolarisedLight> polarised = std::nullopt;
   float sun_visibility = 0.0F;
@@ -68,7 +68,7 @@ struct Shaded {
 
 /// Sum over the rays of a pixel, which all have the same weight.
 struct PixelSum {
-  BandLight radiance;
+  Spectrum radiance;
   int rays = 0;
   /// Sums of the other members of Shaded; null unless layers need them, since most pictures have no
   /// layers.
@@ -76,10 +76,10 @@ struct PixelSum {
 
   /// @param with_parts  must be equal for all rays of the pixel.
   void Add(const Shaded& ray, bool with_parts);
-  [[nodiscard]] BandLight MeanRadiance() const {
+  [[nodiscard]] Spectrum MeanRadiance() const {
     return (1.0F / static_cast<float>(rays)) * radiance;
   }
-  [[nodiscard]] BandLight Mean(BandLight Shaded::*part) const {
+  [[nodiscard]] Spectrum Mean(Spectrum Shaded::*part) const {
     return (1.0F / static_cast<float>(rays)) * ((*parts).*part);
   }
 };

@@ -25,7 +25,7 @@ float SeenThrough(const AirAlongRay& air, HitKind kind, std::size_t band) {
 }
 
 bool Agree(const AirAlongRay& a, const AirAlongRay& b, HitKind kind) {
-  for (std::size_t band = 0; band < a.inscatter.count; ++band) {
+  for (std::size_t band = 0; band < a.inscatter.size(); ++band) {
     const float same = kSameLight * SeenThrough(a, kind, band);
     if (!(std::abs(a.inscatter[band] - b.inscatter[band]) <= same) ||
         !(std::abs(a.transmittance[band] - b.transmittance[band]) <= kSameLight)) {
@@ -42,7 +42,7 @@ bool Agree(const AirAlongRay& a, const AirAlongRay& b, HitKind kind) {
 /// Returns the air for a distance multiplied by `ratio`; no value where the distance changes too
 /// much to extrapolate from the mean of the air.
 std::optional<AirAlongRay> Reaching(AirAlongRay air, double ratio) {
-  for (std::size_t band = 0; band < air.inscatter.count; ++band) {
+  for (std::size_t band = 0; band < air.inscatter.size(); ++band) {
     const float left = air.transmittance[band];
     if (!(std::abs(ratio - 1.0) * static_cast<double>(1.0F - left) <= kSameReach))
       return std::nullopt;
@@ -109,11 +109,11 @@ std::optional<AirAlongRay> AirInterpolationGrid::Between(int column, int row, do
   const double u = (x - x0_) / kCell - column, v = (y - y0_) / kCell - row;
   const std::array<double, 4> share{(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v};
   const std::size_t bands = frame_->scene().medium().wavelengths_nm.size();
-  const auto add = [](float weight, const BandLight& light, BandLight& to) {
-    for (std::size_t band = 0; band < to.count; ++band) to[band] += weight * light[band];
+  const auto add = [](float weight, const Spectrum& light, Spectrum& to) {
+    for (std::size_t band = 0; band < to.size(); ++band) to[band] += weight * light[band];
   };
-  AirAlongRay sum{BandLight(bands), BandLight(bands)};
-  if (frame_->IsPolarised()) sum.polarised = {BandLight(bands), BandLight(bands)};
+  AirAlongRay sum{Spectrum(bands), Spectrum(bands)};
+  if (frame_->IsPolarised()) sum.polarised = {Spectrum(bands), Spectrum(bands)};
   double corners_m = 0.0;
   for (int i = 0; i < 4; ++i) {
     const Corner& corner = At(column + i % 2, row + i / 2);
@@ -198,7 +198,7 @@ void PixelLight::AddNewAir(std::size_t known) {
     const auto shared = around_ != nullptr ? around_->Before(airs_[i]) : std::nullopt;
     if (shared) {
       airs_[i].air = *shared;
-      airs_[i].media = BandLight(shared->inscatter.count);
+      airs_[i].media = Spectrum(shared->inscatter.size());
     } else {
       AddAir(*frame_, airs_[i]);
     }
@@ -229,10 +229,10 @@ void PixelLight::Add(const Ray& seen) {
   const Shaded shaded = shader_->Shade(seen.hit, airs_[seen.air], seen.ray, near,
                                        samples_.Point(sum_.rays, SampleOf::kSunDisk));
   spread_.Add(frame_->scene().colour().LinearSrgb(InDouble(shaded.radiance)));
-  const BandLight glow = shaded.lamps + shaded.volumes;
+  const Spectrum glow = shaded.lamps + shaded.volumes;
   const bool sees_sky = seen.hit.kind == HitKind::kSky && !airs_[seen.air].is_alone;
   if (sees_sky && !sky_) sky_ = shaded.inscatter;
-  BandLight shared = shaded.radiance + -1.0F * glow;
+  Spectrum shared = shaded.radiance + -1.0F * glow;
   if (sees_sky) shared = shared + -1.0F * *sky_;
   new_rays_.push_back({seen.offset.x, seen.offset.y, shared, sees_sky});
   glow_ = glow_ + glow;

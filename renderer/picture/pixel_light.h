@@ -96,10 +96,10 @@ class PixelLight {
   [[nodiscard]] std::vector<SeenRay> NewRays() { return std::exchange(new_rays_, {}); }
   /// Airlight of the rays that see the sky; the radiance in NewRays() of these rays is relative to
   /// it.
-  [[nodiscard]] const std::optional<BandLight>& sky() const { return sky_; }
+  [[nodiscard]] const std::optional<Spectrum>& sky() const { return sky_; }
   /// Replaces the mean radiance without lamps and volumes by a better estimate than the mean of the
   /// pixel's own rays.
-  void SetMeanRadiance(const BandLight& mean) {
+  void SetMeanRadiance(const Spectrum& mean) {
     sum_.radiance = static_cast<float>(sum_.rays) * mean + glow_;
   }
 
@@ -125,8 +125,8 @@ class PixelLight {
   PixelSum sum_;
   RaySpread spread_;
   std::vector<SeenRay> new_rays_;
-  std::optional<BandLight> sky_;
-  BandLight glow_;  // sum of the light from lamps and volumes that new_rays_ exclude
+  std::optional<Spectrum> sky_;
+  Spectrum glow_;  // sum of the light from lamps and volumes that new_rays_ exclude
 };
 
 }  // namespace alpenglow::renderer

@@ -35,36 +35,36 @@ Hit PixelShader::Trace(const CameraRay& ray, double expected_m) const {
   return frame_->geometry().Trace(ray.origin, ray.direction, frame_->camera().PixelAngle());
 }
 
-std::optional<BandLight> PixelShader::LeftOfSpace(double x, double y) const {
+std::optional<Spectrum> PixelShader::LeftOfSpace(double x, double y) const {
   const CameraRay ray = frame_->camera().MiddleRay(x, y);
   const Hit hit = Trace(ray);
   if (hit.kind != HitKind::kSky) return std::nullopt;
   SharedSegmentAir air = SharedSegmentAir::Of(hit, ray.through, *frame_);
   AddAir(*frame_, air);
-  const BandLight left =
+  const Spectrum left =
       UnmarchedLayers(*frame_, ray.through, air.length_m()) * air.air.transmittance;
   return frame_->camera().HasPolariser() ? 0.5F * left : left;
 }
 
-BandLight PixelShader::SunFrom(const glm::dvec3& direction) const {
+Spectrum PixelShader::SunFrom(const glm::dvec3& direction) const {
   return DiskFrom(direction, SunDiskRadiance);
 }
 
-BandLight PixelShader::MoonFrom(const glm::dvec3& direction) const {
+Spectrum PixelShader::MoonFrom(const glm::dvec3& direction) const {
   return DiskFrom(direction, MoonDiskRadiance);
 }
 
-BandLight PixelShader::DiskFrom(const glm::dvec3& direction, DiskBehind disk) const {
-  const BandLight none(frame_->scene().medium().wavelengths_nm.size());
+Spectrum PixelShader::DiskFrom(const glm::dvec3& direction, DiskBehind disk) const {
+  const Spectrum none(frame_->scene().medium().wavelengths_nm.size());
   AirAlongRay clear{none, none};
-  std::fill_n(clear.transmittance.value.begin(), none.count, 1.0F);
-  const BandLight bare = disk(*frame_, direction, clear);
-  if (std::all_of(bare.value.begin(), bare.value.begin() + static_cast<int>(bare.count),
+  std::ranges::fill(clear.transmittance.values(), 1.0F);
+  const Spectrum bare = disk(*frame_, direction, clear);
+  if (std::all_of(bare.values().begin(), bare.values().end(),
                   [](float band) { return band <= 0.0F; }))
     return none;
   SharedSegmentAir air = SharedSegmentAir::Of(Hit{}, direction, *frame_);
   AddAir(*frame_, air);
-  const BandLight left = UnmarchedLayers(*frame_, direction, air.length_m()) * bare;
+  const Spectrum left = UnmarchedLayers(*frame_, direction, air.length_m()) * bare;
   return (frame_->camera().HasPolariser() ? 0.5F : 1.0F) * (air.air.transmittance * left);
 }
 
@@ -81,7 +81,7 @@ PolarisedLight PixelShader::PolarisedGround(const Hit& hit, const CameraRay& ray
     sum = sum ? *sum + sent : sent;
   }
   const std::size_t bands = frame_->scene().medium().wavelengths_nm.size();
-  return sum.value_or(PolarisedLight{BandLight(bands), BandLight(bands)});
+  return sum.value_or(PolarisedLight{Spectrum(bands), Spectrum(bands)});
 }
 
 Shaded PixelShader::Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
@@ -108,13 +108,13 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   shaded.transmittance = through.layers_left * through.air.transmittance;
   const bool has_air = frame.Has(hit.kind == HitKind::kSky ? Effect::kSky : Effect::kAerial);
   if (night && has_air) {
-    const BandLight& scattered = night->scattered();
-    for (std::size_t band = 0; band < scattered.count; ++band)
+    const Spectrum& scattered = night->scattered();
+    for (std::size_t band = 0; band < scattered.size(); ++band)
       shaded.inscatter[band] += (1.0F - shaded.transmittance[band]) * scattered[band];
   }
-  shaded.albedo = BandLight(frame.scene().medium().wavelengths_nm.size());
+  shaded.albedo = Spectrum(frame.scene().medium().wavelengths_nm.size());
   const auto left = [&](double distance_m) {
-    return LeftByBodies(through.pieces, distance_m, through.media.count);
+    return LeftByBodies(through.pieces, distance_m, through.media.size());
   };
   shaded.lamps =
       through.lamp_light + frame.lamps().Seen(near.seen, ray, frame_->camera().PixelAngle(), left);
@@ -140,7 +140,7 @@ void PixelShader::AddGround(const Hit& hit, const CameraRay& ray, const LampTile
   const GroundLight& ground_light = frame_->over_ground().ground_light;
   const SeenGround seen = ground_light.SeenFrom(hit, -ray.direction, frame_->light());
   shaded.albedo = seen.albedo;
-  BandLight natural(shaded.albedo.count);
+  Spectrum natural(shaded.albedo.size());
   for (const FrameLight& source : frame_->lights()) {
     if (!source.light.shows) continue;
     const NaturalRadiance sent = ground_light.Natural(seen, source.ground_sources(), disk_sample);
@@ -151,7 +151,7 @@ void PixelShader::AddGround(const Hit& hit, const CameraRay& ray, const LampTile
     const double cos_up = glm::dot(hit.normal, seen.up);
     natural = natural + static_cast<float>(1.0 / kPi) * (seen.albedo * night->OnSurface(cos_up));
   }
-  const BandLight lamp_light = shaded.transmittance * ground_light.OfLamps(seen, near.surface);
+  const Spectrum lamp_light = shaded.transmittance * ground_light.OfLamps(seen, near.surface);
   shaded.lamps = shaded.lamps + lamp_light;
   shaded.radiance = shaded.radiance + lamp_light + shaded.transmittance * natural;
 }

@@ -30,18 +30,18 @@ class PixelShader {
                              const LampTile& near, std::array<double, 2> disk_sample) const;
   /// Returns the fraction of light from space that air, media and a polariser let through at a place
   /// of the picture; no value where ground is in front.
-  [[nodiscard]] std::optional<BandLight> LeftOfSpace(double x, double y) const;
+  [[nodiscard]] std::optional<Spectrum> LeftOfSpace(double x, double y) const;
   /// Returns the light of the disk of the sun, or of the moon, that arrives from a direction if no
   /// ground is in front; 0 beside the disk.
-  [[nodiscard]] BandLight SunFrom(const glm::dvec3& direction) const;
-  [[nodiscard]] BandLight MoonFrom(const glm::dvec3& direction) const;
+  [[nodiscard]] Spectrum SunFrom(const glm::dvec3& direction) const;
+  [[nodiscard]] Spectrum MoonFrom(const glm::dvec3& direction) const;
 
  private:
   /// Returns the light of a disk that arrives from a direction.
   /// @param disk  returns its light behind the air along a ray.
-  using DiskBehind = BandLight (*)(const FrameContext& frame, const glm::dvec3& direction,
-                                   const AirAlongRay& through);
-  [[nodiscard]] BandLight DiskFrom(const glm::dvec3& direction, DiskBehind disk) const;
+  using DiskBehind = Spectrum (*)(const FrameContext& frame, const glm::dvec3& direction,
+                                  const AirAlongRay& through);
+  [[nodiscard]] Spectrum DiskFrom(const glm::dvec3& direction, DiskBehind disk) const;
   /// Computes Shade() without a polariser and without Shaded::polarised.
   [[nodiscard]] Shaded WithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
                                         const CameraRay& ray, const LampTile& near,

@@ -25,8 +25,8 @@ Medium OnlyWith(Medium medium, EffectSet parts) {
   return medium;
 }
 
-std::optional<BandLight> SkyglowOf(const Scene& scene, const SceneGround& ground,
-                                   const AirByEffects& air, const BandColour& colour) {
+std::optional<Spectrum> SkyglowOf(const Scene& scene, const SceneGround& ground,
+                                  const AirByEffects& air, const BandColour& colour) {
   if (!scene.town_zenith) return std::nullopt;
   const double ground_m = std::max(GroundHeightUnder(ground, scene.place), 0.0);
   return Skyglow(*scene.town_zenith, ground_m, air.whole().air.single_scattering(), colour);

@@ -120,7 +120,7 @@ class PreparedScene {
   }
   [[nodiscard]] const AirByEffects& air() const { return air_; }
   /// Returns the light of towns in the night sky (Skyglow); empty if there is none.
-  [[nodiscard]] const std::optional<BandLight>& towns() const { return towns_; }
+  [[nodiscard]] const std::optional<Spectrum>& towns() const { return towns_; }
   /// Computes the horizons of the terrain unless they are known. Pictures compute them on demand.
   void PrepareHorizons() const { (void)horizons_->Get(); }
   [[nodiscard]] RecentSunlight& sunlight() const { return *sunlight_; }
@@ -157,7 +157,7 @@ class PreparedScene {
   GroundMaterial material_;
   std::string terrain_message_;
   AirByEffects air_;
-  std::optional<BandLight> towns_;
+  std::optional<Spectrum> towns_;
   mutable std::once_flag few_bands_asked_;
   mutable std::unique_ptr<PreparedScene> few_bands_;
   Place pattern_origin_;

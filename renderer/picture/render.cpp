@@ -77,7 +77,7 @@ double VarianceAmong(const std::vector<RaySpread>& spreads, const Tile& tile, in
 /// Adds the light of stars and small disks at the pixel, which rays do not meet.
 PixelSum WithStars(const FrameContext& frame, int x, int y, PixelSum rays) {
   const auto add = [&](const auto& lights) {
-    const BandLight* light = lights ? lights->At(x, y) : nullptr;
+    const Spectrum* light = lights ? lights->At(x, y) : nullptr;
     if (light != nullptr) rays.radiance = rays.radiance + static_cast<float>(rays.rays) * *light;
   };
   add(frame.sky_lights().stars);

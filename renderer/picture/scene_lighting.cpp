@@ -45,7 +45,7 @@ void AddNight(const PreparedScene& scene, const Observer& observer, Lighting& li
   light.shows = sun_lux > kUnseenShare * (moon_lux + kNightSky_lux) ||
                 depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(eye), geometry.radius_m(),
                                                      medium.atmosphere_height_m);
-  const std::optional<BandLight>& towns = scene.towns();
+  const std::optional<Spectrum>& towns = scene.towns();
   const double towns_lux =
       towns ? kPi * scene.colour().Xyz(InDouble(*towns))[1] : 0.0;  // upper bound
   if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
@@ -73,7 +73,7 @@ double IlluminanceBy(const PreparedScene& scene, const DistantLight& source, con
   const AirOverGround& over_ground = scene.air().whole();
   const LocalLight sun = over_ground.ground_light.LocalLightAt(eye, light.By(source));
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
-  const BandLight irradiance =
+  const Spectrum irradiance =
       direct * over_ground.air.BeamLeft(sun.altitude_m, sun.mu_s_effective) +
       over_ground.air.multiple_scattering().SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
   return scene.colour().Xyz(InDouble(source.irradiance * irradiance))[1];

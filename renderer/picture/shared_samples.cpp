@@ -99,7 +99,7 @@ void SharedSampleFilter::Add(int column, int row, const SeenRay& ray) {
   const Weights across = Around(x, columns_), along = Around(y, rows_);
   alignas(16) std::array<float, kLight + kMaxBands> values{
       1.0F, static_cast<float>(x), static_cast<float>(y), ray.sees_sky ? 1.0F : 0.0F};
-  std::copy_n(ray.radiance.value.begin(), bands_, values.begin() + kLight);
+  std::copy_n(ray.radiance.values().begin(), bands_, values.begin() + kLight);
   struct Share {
     std::size_t pixel;
     float weight;
@@ -125,13 +125,13 @@ void SharedSampleFilter::Add(int column, int row, const SeenRay& ray) {
   }
 }
 
-void SharedSampleFilter::SetSky(int column, int row, const BandLight& sky) {
+void SharedSampleFilter::SetSky(int column, int row, const Spectrum& sky) {
   skies_[Index(column, row)] = sky;
 }
 
-BandLight SharedSampleFilter::SkyAt(int column, int row) const {
+Spectrum SharedSampleFilter::SkyAt(int column, int row) const {
   if (const auto& own = skies_[Index(column, row)]) return *own;
-  BandLight sum(bands_);
+  Spectrum sum(bands_);
   float skies = 0.0F;
   for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y) {
     for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x) {
@@ -144,7 +144,7 @@ BandLight SharedSampleFilter::SkyAt(int column, int row) const {
   return skies > 0.0F ? (1.0F / skies) * sum : sum;
 }
 
-BandLight SharedSampleFilter::Light(int column, int row) const {
+Spectrum SharedSampleFilter::Light(int column, int row) const {
   constexpr float kMostOff = 0.25F;  // keeps light positive if both axes are corrected
   const std::size_t here = Index(column, row);
   const auto off = [&](std::size_t sum, int middle) {
@@ -154,8 +154,8 @@ BandLight SharedSampleFilter::Light(int column, int row) const {
   const bool has_ends = row > 0 && row + 1 < rows_;
   const float right = has_sides ? off(kColumn, column) : 0.0F;
   const float down = has_ends ? off(kRow, row) : 0.0F;
-  const BandLight sky = SkyAt(column, row);
-  BandLight light(bands_);
+  const Spectrum sky = SkyAt(column, row);
+  Spectrum light(bands_);
   for (std::size_t band = 0; band < bands_; ++band) {
     const auto mean = [&](std::size_t pixel) {
       return Mean(pixel, kLight + band) + Mean(pixel, kSky) * sky[band];

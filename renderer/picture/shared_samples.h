@@ -85,7 +85,7 @@ class RaySpread {
 /// The radiance of a ray and its offset from the middle of its pixel [pixels].
 struct SeenRay {
   double right, down;
-  BandLight radiance;  // relative to the sky of its pixel where it sees the sky
+  Spectrum radiance;  // relative to the sky of its pixel where it sees the sky
   bool sees_sky = false;
 };
 
@@ -99,11 +99,11 @@ class SharedSampleFilter {
   void Expect(int column, int row, int rays);
   void Add(int column, int row, const SeenRay& ray);
   /// Sets the sky radiance of a pixel with rays that see it.
-  void SetSky(int column, int row, const BandLight& sky);
+  void SetSky(int column, int row, const Spectrum& sky);
 
   /// Returns the mean light of a pixel that has rays. If only rays of neighbours see the sky, their
   /// sky is used.
-  [[nodiscard]] BandLight Light(int column, int row) const;
+  [[nodiscard]] Spectrum Light(int column, int row) const;
 
  private:
   static constexpr int kReach = 3;  // pixels along each axis whose filters a ray can lie in
@@ -121,7 +121,7 @@ class SharedSampleFilter {
   }
 
   /// Returns the pixel's sky, else the mean sky of the pixels around it, else zero.
-  [[nodiscard]] BandLight SkyAt(int column, int row) const;
+  [[nodiscard]] Spectrum SkyAt(int column, int row) const;
 
   // Each pixel stores sums of g, of g times the ray's column, row and sky visibility, and from
   // kLight on of g times its light, in blocks of four for vector instructions.
@@ -132,7 +132,7 @@ class SharedSampleFilter {
   std::vector<float> filter_;  // filter weight over the distance, up to its radius
   std::vector<float> expected_;
   std::vector<float> sums_;
-  std::vector<std::optional<BandLight>> skies_;
+  std::vector<std::optional<Spectrum>> skies_;
 };
 
 }  // namespace alpenglow::renderer

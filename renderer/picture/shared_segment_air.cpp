@@ -120,9 +120,9 @@ class AirTo {
     const AirOverGround& in = frame_.over_ground();
     ViewRay ray = ray_;
     ray.length_m = std::min(ray.length_m, length_m);
-    AirAlongRay none{BandLight(in.air.bands()), BandLight(in.air.bands())};
+    AirAlongRay none{Spectrum(in.air.bands()), Spectrum(in.air.bands())};
     if (frame_.IsPolarised()) none.polarised = {none.inscatter, none.inscatter};
-    std::fill_n(none.transmittance.value.begin(), none.transmittance.count, 1.0F);
+    std::ranges::fill(none.transmittance.values(), 1.0F);
     if (kind_ != HitKind::kSky && !frame_.Has(Effect::kAerial)) return none;
     if (!is_lit_ || (kind_ == HitKind::kSky && !frame_.Has(Effect::kSky))) {
       none.transmittance = in.air.single_scattering().TransmittanceAlong(ray);
@@ -163,7 +163,7 @@ AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& a
       pieces, [&](double m) { return air(m).inscatter; }, whole.inscatter, Behind::kAll);
   if (!whole.polarised) return left;
   // Q and U can fall with distance, but the light behind an analyser, I + Q and I + U, increases.
-  const auto dimmed = [&](BandLight PolarisedLight::*part) {
+  const auto dimmed = [&](Spectrum PolarisedLight::*part) {
     const auto passed = [&](const AirAlongRay& lit) {
       return lit.inscatter + *lit.polarised.*part;
     };
@@ -181,7 +181,7 @@ void AddSource(const FrameContext& frame, const FrameLight& source, bool is_firs
                const AirRay& through, SharedSegmentAir& rays) {
   const AirTo air(frame, source, rays.kind, through);
   AirAlongRay lit = air(std::numeric_limits<double>::infinity());
-  if (is_first) rays.media = BandLight(lit.inscatter.count);
+  if (is_first) rays.media = Spectrum(lit.inscatter.size());
   if (source.media) {
     MarchedLight marched = source.media->Along(frame.camera().eye(), through.direction,
                                                through.length_m, air.sunlit());
@@ -266,7 +266,7 @@ void AddAir(const FrameContext& frame, SharedSegmentAir& rays) {
   }
 }
 
-BandLight UnmarchedLayers(const FrameContext& frame, const glm::dvec3& direction, double length_m) {
+Spectrum UnmarchedLayers(const FrameContext& frame, const glm::dvec3& direction, double length_m) {
   const bool is_marched = frame.media() && frame.media()->media().HasLayers();
   return frame.lamps().LayerTransmittance(direction, is_marched ? 0.0 : length_m);
 }
@@ -274,7 +274,7 @@ BandLight UnmarchedLayers(const FrameContext& frame, const glm::dvec3& direction
 void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
   const AirRay through = AirRayOf(frame, rays);
   rays.layers_left = UnmarchedLayers(frame, through.direction, through.length_m);
-  rays.lamp_light = BandLight(rays.media.count);
+  rays.lamp_light = Spectrum(rays.media.size());
   if (frame.plan().tiles.empty() || !frame.Has(Effect::kBeams)) return;
   const auto upto = [&](double length_m) {
     return frame.lamps().InAir(frame.plan(), x, y,

@@ -31,9 +31,9 @@ struct SharedSegmentAir {
   // Values along the mean direction of the rays, to their mean distance:
   AirAlongRay air{};  // Q and U in the axes of the picture
   /// Transmittance of the layers that only lamps light; `air` includes that of other media.
-  BandLight layers_left{};
-  BandLight lamp_light{};  // airlight of lamps, W m^-2 sr^-1 nm^-1
-  BandLight media{};       // light of sun and sky scattered by media, W m^-2 sr^-1 nm^-1
+  Spectrum layers_left{};
+  Spectrum lamp_light{};  // airlight of lamps, W m^-2 sr^-1 nm^-1
+  Spectrum media{};       // light of sun and sky scattered by media, W m^-2 sr^-1 nm^-1
   std::vector<MarchedPiece> pieces{};  // pieces of media along the ray
 
   [[nodiscard]] double length_m() const {
@@ -65,8 +65,8 @@ struct SharedSegmentAir {
 void AddAir(const FrameContext& frame, SharedSegmentAir& rays);
 
 /// Returns the transmittance of layers along a ray, unless the light of the air includes it.
-[[nodiscard]] BandLight UnmarchedLayers(const FrameContext& frame, const glm::dvec3& direction,
-                                        double length_m);
+[[nodiscard]] Spectrum UnmarchedLayers(const FrameContext& frame, const glm::dvec3& direction,
+                                       double length_m);
 
 /// Computes the airlight of lamps for pixel (x, y), and the transmittance of layers that only lamps
 /// light. Call after AddAir.

@@ -30,8 +30,8 @@ int SamplesOfCell(const MovingCamera& camera, const ArrivingRay& middle, double 
   return static_cast<int>(std::bit_ceil(is_blurred ? std::max(fine, kBlurred) : fine));
 }
 
-bool IsDark(const BandLight& light) {
-  return std::all_of(light.value.begin(), light.value.begin() + static_cast<int>(light.count),
+bool IsDark(const Spectrum& light) {
+  return std::all_of(light.values().begin(), light.values().end(),
                      [](float band) { return band <= 0.0F; });
 }
 
@@ -109,7 +109,7 @@ void SmallDisk::AddCell(const MovingCamera& camera, const PixelFilter& filter,
   const int count =
       seen ? SamplesOfCell(camera, *seen, grid.width_rad()) : PixelSamples::kMostSamples;
   const PixelSamples samples = grid.SamplesOf(cell, count);
-  std::optional<BandLight> share;  // of a sample, known when the first of them is seen
+  std::optional<Spectrum> share;  // of a sample, known when the first of them is seen
   for (int i = 0; i < count; ++i) {
     const auto of = [&](SampleOf decision) {
       return count == 1 ? kMiddle : samples.Point(i, decision);
@@ -131,7 +131,7 @@ void SmallDisk::AddCell(const MovingCamera& camera, const PixelFilter& filter,
 // The weights of the pixels around a point are scaled so that they sum to one: the illuminance in
 // the picture is that of the disk.
 void SmallDisk::Spread(const CameraRays& camera, const PixelFilter& filter, const ArrivingRay& at,
-                       const BandLight& irradiance) {
+                       const Spectrum& irradiance) {
   constexpr int kReach = 2;
   using Weights = std::array<double, 2 * kReach + 1>;
   const auto weights_around = [&](double place) {

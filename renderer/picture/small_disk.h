@@ -21,7 +21,7 @@ struct DiskInSky {
   glm::dvec3 turn{0.0};     // axis and angle [rad] of its motion while the shutter is open
   /// Returns the radiance that arrives from a direction if nothing hides it, its mean while the
   /// shutter is open; 0 beside the disk.
-  std::function<BandLight(const glm::dvec3& direction)> radiance;
+  std::function<Spectrum(const glm::dvec3& direction)> radiance;
   /// Returns whether a ray meets nothing but sky.
   std::function<bool(const CameraRay& ray)> is_open;
 };
@@ -34,14 +34,14 @@ class SmallDisk {
             const DiskInSky& disk);
 
   /// Returns the radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing to add.
-  [[nodiscard]] const BandLight* At(int x, int y) const { return spread_.At(x, y); }
+  [[nodiscard]] const Spectrum* At(int x, int y) const { return spread_.At(x, y); }
 
  private:
   class Grid;
   void AddCell(const MovingCamera& camera, const PixelFilter& filter, const DiskInSky& disk,
                const Grid& grid, int cell);
   void Spread(const CameraRays& camera, const PixelFilter& filter, const ArrivingRay& at,
-              const BandLight& irradiance);
+              const Spectrum& irradiance);
 
   int width_, height_;
   SpreadLight spread_;

@@ -17,7 +17,7 @@ std::array<int, 2> InPanorama(int column, int row, int width, int height) {
 
 }  // namespace
 
-void SpreadLight::Add(const CameraRays& camera, int column, int row, const BandLight& irradiance) {
+void SpreadLight::Add(const CameraRays& camera, int column, int row, const Spectrum& irradiance) {
   if (camera.IsPanorama()) {
     const auto pixel = InPanorama(column, row, width_, height_);
     column = pixel[0];
@@ -28,13 +28,13 @@ void SpreadLight::Add(const CameraRays& camera, int column, int row, const BandL
   if (at == pixels_.end()) {
     const double per_sr = 1.0 / camera.PixelSolidAngle(column, row);
     at =
-        pixels_.emplace(row * width_ + column, LitPixel{per_sr, BandLight(irradiance.count)}).first;
+        pixels_.emplace(row * width_ + column, LitPixel{per_sr, Spectrum(irradiance.size())}).first;
   }
   LitPixel& pixel = at->second;
   pixel.radiance = pixel.radiance + static_cast<float>(pixel.per_sr) * irradiance;
 }
 
-const BandLight* SpreadLight::At(int x, int y) const {
+const Spectrum* SpreadLight::At(int x, int y) const {
   const auto found = pixels_.find(y * width_ + x);
   return found == pixels_.end() ? nullptr : &found->second.radiance;
 }

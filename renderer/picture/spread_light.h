@@ -21,17 +21,17 @@ class SpreadLight {
 
   /// Adds the light that falls on a pixel, W m^-2 nm^-1; nothing outside a picture that is no
   /// panorama.
-  void Add(const CameraRays& camera, int column, int row, const BandLight& irradiance);
+  void Add(const CameraRays& camera, int column, int row, const Spectrum& irradiance);
 
   /// Returns the radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing to add.
-  [[nodiscard]] const BandLight* At(int x, int y) const;
+  [[nodiscard]] const Spectrum* At(int x, int y) const;
   /// Number of pixels with light.
   [[nodiscard]] std::size_t size() const { return pixels_.size(); }
 
  private:
   struct LitPixel {
     double per_sr;
-    BandLight radiance;
+    Spectrum radiance;
   };
 
   int width_, height_;

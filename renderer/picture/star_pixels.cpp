@@ -52,7 +52,7 @@ void StarPixels::AddPoint(const CameraRays& camera, const StarLight& light, cons
   if (!at) return;
   const PicturePoint place{(*at)[0], (*at)[1]};
   if (!IsNear(place)) return;
-  const std::optional<BandLight> through = left(place.x, place.y);
+  const std::optional<Spectrum> through = left(place.x, place.y);
   if (!through) return;
   directions_.push_back(light.direction);
   Spread(camera, place, *through * light.irradiance);
@@ -77,14 +77,14 @@ void StarPixels::AddTrail(const CameraRays& camera, const StarLight& light, cons
 // Transmittance changes little from end to end of a step. If ground hides one end, it is evaluated
 // at every point.
 void StarPixels::AddStep(const CameraRays& camera, const PicturePoint& from, const PicturePoint& to,
-                         const BandLight& irradiance, const Left& left, const Hidden& hidden) {
+                         const Spectrum& irradiance, const Left& left, const Hidden& hidden) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   const int count = std::max(static_cast<int>(std::ceil(2.0 * length)), 1);
   const auto place = [&](int i) {
     const double share = (i + 0.5) / count;
     return PicturePoint{std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share)};
   };
-  std::optional<BandLight> first, last;
+  std::optional<Spectrum> first, last;
   bool is_asked = false;
   for (int i = 0; i < count; ++i) {
     const PicturePoint at = place(i);
@@ -94,7 +94,7 @@ void StarPixels::AddStep(const CameraRays& camera, const PicturePoint& from, con
       last = left(to.x, to.y);
       is_asked = true;
     }
-    std::optional<BandLight> through;
+    std::optional<Spectrum> through;
     if (!first || !last) {
       through = left(at.x, at.y);
     } else if (!hidden(at.x, at.y)) {
@@ -106,7 +106,7 @@ void StarPixels::AddStep(const CameraRays& camera, const PicturePoint& from, con
 }
 
 void StarPixels::Spread(const CameraRays& camera, const PicturePoint& place,
-                        const BandLight& irradiance) {
+                        const Spectrum& irradiance) {
   const auto [x, y] = place;
   const StarBell across = StarBellAround(x), down = StarBellAround(y);
   for (int j = 0; j < 2 * kStarReach + 1; ++j) {

@@ -31,7 +31,7 @@ class StarPixels {
  public:
   /// Returns the transmittance of light from space at a place of the picture; no value where
   /// something occludes it.
-  using Left = std::function<std::optional<BandLight>(double x, double y)>;
+  using Left = std::function<std::optional<Spectrum>(double x, double y)>;
 
   /// Returns whether something occludes a place of the picture. Cheaper than Left, which also
   /// computes air.
@@ -42,7 +42,7 @@ class StarPixels {
              const Left& left, const Hidden& hidden);
 
   /// Returns the radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing to add.
-  [[nodiscard]] const BandLight* At(int x, int y) const { return spread_.At(x, y); }
+  [[nodiscard]] const Spectrum* At(int x, int y) const { return spread_.At(x, y); }
   /// Directions of the lights within the picture, brightest first.
   [[nodiscard]] const std::vector<glm::dvec3>& directions() const { return directions_; }
 
@@ -56,8 +56,8 @@ class StarPixels {
   void AddTrail(const CameraRays& camera, const StarLight& light, const Left& left,
                 const Hidden& hidden);
   void AddStep(const CameraRays& camera, const PicturePoint& from, const PicturePoint& to,
-               const BandLight& irradiance, const Left& left, const Hidden& hidden);
-  void Spread(const CameraRays& camera, const PicturePoint& place, const BandLight& irradiance);
+               const Spectrum& irradiance, const Left& left, const Hidden& hidden);
+  void Spread(const CameraRays& camera, const PicturePoint& place, const Spectrum& irradiance);
 
   int width_, height_;
   SpreadLight spread_;

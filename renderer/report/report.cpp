@@ -62,7 +62,7 @@ class FroxelColumn {
   static constexpr int kSide = 32;  // froxels of the volume across the picture
 
   FroxelColumn(const SingleScattering<float>& air, const ViewRay& ray) : slices_(kSlices + 1) {
-    slices_[0] = {Bands<float>(air.bands()), Bands<float>(air.bands())};
+    slices_[0] = {Spectrum(air.bands()), Spectrum(air.bands())};
     for (std::size_t band = 0; band < air.bands(); ++band) slices_[0].transmittance[band] = 1.0F;
     const Medium& medium = air.medium();
     for (int k = 1; k <= kSlices; ++k) {
@@ -77,23 +77,23 @@ class FroxelColumn {
     }
   }
 
-  [[nodiscard]] Bands<float> Inscatter(double distance_m) const {
+  [[nodiscard]] Spectrum Inscatter(double distance_m) const {
     return Between(distance_m, &AirAlongRay::inscatter);
   }
-  [[nodiscard]] Bands<float> Transmittance(double distance_m) const {
+  [[nodiscard]] Spectrum Transmittance(double distance_m) const {
     return Between(distance_m, &AirAlongRay::transmittance);
   }
 
  private:
-  [[nodiscard]] Bands<float> Between(double distance_m, Bands<float> AirAlongRay::*part) const {
+  [[nodiscard]] Spectrum Between(double distance_m, Spectrum AirAlongRay::*part) const {
     const double slice =
         std::min(std::sqrt(distance_m / kFarthest_m) * kSlices, static_cast<double>(kSlices));
     const auto low = std::min(static_cast<std::size_t>(slice), std::size_t{kSlices} - 1);
     const auto share = static_cast<float>(slice - static_cast<double>(low));
-    const Bands<float>& from = slices_[low].*part;
-    const Bands<float>& to = slices_[low + 1].*part;
-    Bands<float> mixed(from.count);
-    for (std::size_t band = 0; band < mixed.count; ++band)
+    const Spectrum& from = slices_[low].*part;
+    const Spectrum& to = slices_[low + 1].*part;
+    Spectrum mixed(from.size());
+    for (std::size_t band = 0; band < mixed.size(); ++band)
       mixed[band] = (1.0F - share) * from[band] + share * to[band];
     return mixed;
   }
@@ -102,12 +102,12 @@ class FroxelColumn {
 };
 
 /// Returns the mean of the bands in every band.
-Bands<float> Grey(const Bands<float>& bands) {
+Spectrum Grey(const Spectrum& bands) {
   float sum = 0.0F;
-  for (std::size_t band = 0; band < bands.count; ++band) sum += bands[band];
-  Bands<float> grey(bands.count);
-  for (std::size_t band = 0; band < bands.count; ++band)
-    grey[band] = sum / static_cast<float>(bands.count);
+  for (std::size_t band = 0; band < bands.size(); ++band) sum += bands[band];
+  Spectrum grey(bands.size());
+  for (std::size_t band = 0; band < bands.size(); ++band)
+    grey[band] = sum / static_cast<float>(bands.size());
   return grey;
 }
 

@@ -94,7 +94,7 @@ struct ShaftScene {
   }
 
   /// Returns single scattering by a march with `rays` occlusion rays.
-  [[nodiscard]] Bands<float> March(const ShaftRay& one, int rays, double offset = 0.5) const {
+  [[nodiscard]] Spectrum March(const ShaftRay& one, int rays, double offset = 0.5) const {
     return air.Inscatter(
         MarchWithOcclusion(air, views[one.sun], one.pixel, place.terrain, rays, offset),
         one.ray.nu);
@@ -103,10 +103,10 @@ struct ShaftScene {
 
 /// Returns the mean of eight marches with different steps.
 std::vector<double> MeanOfMarches(const ShaftScene& scene, const ShaftRay& one, int rays) {
-  Bands<float> mean(scene.air.bands());
+  Spectrum mean(scene.air.bands());
   for (int k = 0; k < 8; ++k) {
-    const Bands<float> light = scene.March(one, rays, (k + 0.5) / 8);
-    for (std::size_t band = 0; band < light.count; ++band) mean[band] += light[band] / 8.0F;
+    const Spectrum light = scene.March(one, rays, (k + 0.5) / 8);
+    for (std::size_t band = 0; band < light.size(); ++band) mean[band] += light[band] / 8.0F;
   }
   return ValuesOf(mean);
 }

@@ -123,16 +123,16 @@ BandsOfColour::BandsOfColour(std::span<const double> wavelengths_nm) {
     std::array<double, 3> rgb{kGrey, kGrey, kGrey};
     rgb[channel] += kStep;
     const std::vector<double> moved = AlbedoFromLinearSrgb(rgb, wavelengths_nm);
-    of_primary_[channel] = BandLight(grey.size());
+    of_primary_[channel] = Spectrum(grey.size());
     for (std::size_t band = 0; band < grey.size(); ++band) {
       of_primary_[channel][band] = static_cast<float>((moved[band] - grey[band]) / kStep);
     }
   }
 }
 
-BandLight BandsOfColour::Albedo(const std::array<double, 3>& rgb) const {
-  BandLight albedo(of_primary_[0].count);
-  for (std::size_t band = 0; band < albedo.count; ++band) {
+Spectrum BandsOfColour::Albedo(const std::array<double, 3>& rgb) const {
+  Spectrum albedo(of_primary_[0].size());
+  for (std::size_t band = 0; band < albedo.size(); ++band) {
     float sum = 0.0F;
     for (std::size_t channel = 0; channel < 3; ++channel)
       sum += static_cast<float>(rgb[channel]) * of_primary_[channel][band];

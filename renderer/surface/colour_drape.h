@@ -33,14 +33,14 @@ class BandsOfColour {
   explicit BandsOfColour(std::span<const double> wavelengths_nm);
 
   /// @param rgb  linear sRGB.
-  [[nodiscard]] BandLight Albedo(const std::array<double, 3>& rgb) const;
+  [[nodiscard]] Spectrum Albedo(const std::array<double, 3>& rgb) const;
   /// Returns the albedo that one unit of a channel contributes.
-  [[nodiscard]] const BandLight& OfPrimary(std::size_t channel) const {
+  [[nodiscard]] const Spectrum& OfPrimary(std::size_t channel) const {
     return of_primary_[channel];
   }
 
  private:
-  std::array<BandLight, 3> of_primary_;
+  std::array<Spectrum, 3> of_primary_;
 };
 
 /// Colours or land cover on the terrain. Immutable; safe to use from many threads.

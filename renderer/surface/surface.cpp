@@ -17,9 +17,9 @@
 namespace alpenglow::renderer {
 namespace {
 
-Bands<float> AlbedoBands(const std::array<double, 3>& rgb, std::span<const double> wavelengths_nm) {
+Spectrum AlbedoBands(const std::array<double, 3>& rgb, std::span<const double> wavelengths_nm) {
   const std::vector<double> albedo = AlbedoFromLinearSrgb(rgb, wavelengths_nm);
-  Bands<float> bands(albedo.size());
+  Spectrum bands(albedo.size());
   for (std::size_t band = 0; band < albedo.size(); ++band)
     bands[band] = static_cast<float>(albedo[band]);
   return bands;
@@ -146,8 +146,8 @@ MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const M
                  Wetted(AlbedoBands({0.173, 0.172, 0.166}, wavelengths_nm), wetness),
                  AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)} {}
 
-Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
-                                     const std::optional<MappedCover>& mapped) const {
+Spectrum MountainSurface::Albedo(const GroundPoint& point, double normal_up,
+                                 const std::optional<MappedCover>& mapped) const {
   const double broad = DetailNoise(point, GroundNoise::kBroad);
   const double fine = DetailNoise(point, GroundNoise::kFine);
   const double grain = DetailNoise(point, GroundNoise::kGrain);
@@ -175,8 +175,8 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
   const float snow =
       std::max(shared::SnowSeen(lying, forest, rock, gap), mapped ? mapped->snow : 0.0F);
   const auto tone = shared::GroundTone(rise(broad), rise(fine), rise(grain), forest, rock);
-  Bands<float> albedo(materials_.rock.count);
-  for (std::size_t band = 0; band < albedo.count; ++band) {
+  Spectrum albedo(materials_.rock.size());
+  for (std::size_t band = 0; band < albedo.size(); ++band) {
     const Materials& of = materials_;
     const float green = shared::GreenAlbedo(
         shared::PartlyCovered(of.dry_meadow[band], of.meadow[band], grass), of.conifers[band],
@@ -229,10 +229,10 @@ WavySurface WavesAt(const GroundPoint& point, double slope_variance) {
 GroundPatch::GroundPatch(const GroundMaterial& material, const GroundPoint& at)
     : material_(material),
       kind_(Kind::kWater),
-      albedo_(material.albedo().count),
+      albedo_(material.albedo().size()),
       waves_(WavesAt(at, material.water().slope_variance())) {}
 
-BandLight GroundPatch::Brdf(const ReflectionAngles& at) const {
+Spectrum GroundPatch::Brdf(const ReflectionAngles& at) const {
   switch (kind_) {
     case Kind::kOrenNayar:
       return material_.rough_.Brdf(albedo_, at);
@@ -249,7 +249,7 @@ BandLight GroundPatch::Brdf(const ReflectionAngles& at) const {
   return static_cast<float>(1.0 / kPi) * albedo_;
 }
 
-BandLight GroundPatch::BodyAlbedo(double mu_eye) const {
+Spectrum GroundPatch::BodyAlbedo(double mu_eye) const {
   switch (kind_) {
     case Kind::kOrenNayar:
       return material_.rough_.Albedo(albedo_, mu_eye);
@@ -294,9 +294,9 @@ std::optional<double> GroundMaterial::WaterLine_m() const {
   return *cover_.sea_level_m + kWaterLine_m;
 }
 
-BandLight GroundMaterial::AlbedoAt(const GroundPoint& at, double normal_up,
-                                   const MountainSurface& season,
-                                   const std::optional<std::array<double, 3>>& draped) const {
+Spectrum GroundMaterial::AlbedoAt(const GroundPoint& at, double normal_up,
+                                  const MountainSurface& season,
+                                  const std::optional<std::array<double, 3>>& draped) const {
   if (draped && !HasLandCover()) return Wetted(bands_of_colour_.Albedo(*draped), cover_.wetness);
   if (cover_.kind != Kind::kMountain) return albedo_;
   if (!draped || shared::IsMapped((*draped)[1], (*draped)[2]) == 0.0)
@@ -312,7 +312,7 @@ GroundPatch GroundMaterial::OfTerrain(const GroundPoint& at, const glm::dvec3& p
   const auto water_line_m = WaterLine_m();
   if (cover_.kind == Kind::kWater || (water_line_m && at.altitude_m <= *water_line_m))
     return {*this, at};
-  if (cover_.kind == Kind::kSnow) return {*this, cover_.kind, BandLight(albedo_.count)};
+  if (cover_.kind == Kind::kSnow) return {*this, cover_.kind, Spectrum(albedo_.size())};
   std::optional<std::array<double, 3>> draped;
   if (drape_) draped = drape_->At(point, at.altitude_m, at.across_m);
   if (draped && HasLandCover() && shared::IsMappedWater((*draped)[0], (*draped)[1]) > 0.0)
@@ -320,7 +320,7 @@ GroundPatch GroundMaterial::OfTerrain(const GroundPoint& at, const glm::dvec3& p
   return {*this, cover_.kind, AlbedoAt(at, normal_up, season, draped)};
 }
 
-GroundPatch GroundMaterial::OfPlanet(const GroundPoint& at, const BandLight& planet_albedo) const {
+GroundPatch GroundMaterial::OfPlanet(const GroundPoint& at, const Spectrum& planet_albedo) const {
   const auto water_line_m = WaterLine_m();
   if (cover_.kind == Kind::kWater || (water_line_m && *water_line_m >= 0.0)) return {*this, at};
   if (cover_.kind == Kind::kMountain) return {*this, cover_.kind, planet_albedo};

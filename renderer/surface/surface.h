@@ -86,7 +86,7 @@ class MountainSurface {
  public:
   /// Albedos of pure materials.
   struct Materials {
-    Bands<float> conifers, leaves, yellow_leaves, bare_trees, meadow, dry_meadow, rock, snow;
+    Spectrum conifers, leaves, yellow_leaves, bare_trees, meadow, dry_meadow, rock, snow;
   };
 
   /// @param wetness  of rock and meadow, in [0, 1]; leaves of a wood shed water.
@@ -99,8 +99,8 @@ class MountainSurface {
   /// @param normal_up  vertical component of the unit normal, 1 on level ground.
   /// @param mapped  replaces the materials derived from altitude and slope; seasonal snow still
   ///     covers it.
-  [[nodiscard]] Bands<float> Albedo(const GroundPoint& point, double normal_up,
-                                    const std::optional<MappedCover>& mapped = std::nullopt) const;
+  [[nodiscard]] Spectrum Albedo(const GroundPoint& point, double normal_up,
+                                const std::optional<MappedCover>& mapped = std::nullopt) const;
 
   /// Returns the unit normal with the relief that a mesh of 30 to 100 m spacing lacks, in waves of
   /// 220 to 7 m, in the frame of the pattern like `normal`. The normal is tilted by about 6.4
@@ -119,7 +119,7 @@ class GroundMaterial;
 class GroundPatch {
  public:
   /// @param albedo  of the multiple_scattering body; not used for water and snow.
-  GroundPatch(const GroundMaterial& material, GroundCover::Kind kind, BandLight albedo)
+  GroundPatch(const GroundMaterial& material, GroundCover::Kind kind, Spectrum albedo)
       : material_(material), kind_(kind), albedo_(std::move(albedo)) {}
   /// Creates a patch of water.
   GroundPatch(const GroundMaterial& material, const GroundPoint& at);
@@ -134,20 +134,20 @@ class GroundPatch {
   }
 
   /// Returns the radiance per irradiance from one direction [1/sr].
-  [[nodiscard]] BandLight Brdf(const ReflectionAngles& at) const;
+  [[nodiscard]] Spectrum Brdf(const ReflectionAngles& at) const;
   /// Returns the part of a water patch's BRDF that the surface mirrors [1/sr].
   [[nodiscard]] double Glitter(const ReflectionAngles& at) const {
     return Water::Glitter(at, waves_.slope_variance);
   }
   /// Returns the fraction of a uniform sky that is reflected to an eye, excluding mirrored light.
-  [[nodiscard]] BandLight BodyAlbedo(double mu_eye) const;
+  [[nodiscard]] Spectrum BodyAlbedo(double mu_eye) const;
   /// Returns the mirrored rays; empty for patches that are not glossy.
   [[nodiscard]] MirroredRays Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const;
 
  private:
   const GroundMaterial& material_;
   GroundCover::Kind kind_;
-  BandLight albedo_;
+  Spectrum albedo_;
   WavySurface waves_{0.0, 0.0, 0.0};
 };
 
@@ -167,7 +167,7 @@ class GroundMaterial {
   /// Returns a patch of the planet outside the terrain.
   /// @param planet_albedo  used if the cover is that of mountains: the season's low land around
   ///     terrain, or the medium's albedo without terrain.
-  [[nodiscard]] GroundPatch OfPlanet(const GroundPoint& at, const BandLight& planet_albedo) const;
+  [[nodiscard]] GroundPatch OfPlanet(const GroundPoint& at, const Spectrum& planet_albedo) const;
 
   /// Returns whether any of the ground mirrors the sky.
   [[nodiscard]] bool HasGloss() const;
@@ -178,7 +178,7 @@ class GroundMaterial {
   [[nodiscard]] const ColourDrape* drape() const { return drape_.get(); }
   [[nodiscard]] const BandsOfColour& bands_of_colour() const { return bands_of_colour_; }
   /// Albedo of the cover's single colour.
-  [[nodiscard]] const BandLight& albedo() const { return albedo_; }
+  [[nodiscard]] const Spectrum& albedo() const { return albedo_; }
   [[nodiscard]] const RoughDiffuse& rough() const { return rough_; }
   [[nodiscard]] const Glossy& glossy() const { return glossy_; }
   [[nodiscard]] const Water& water() const { return water_; }
@@ -189,15 +189,15 @@ class GroundMaterial {
  private:
   friend class GroundPatch;
   /// @param draped  value of the drape at the point.
-  [[nodiscard]] BandLight AlbedoAt(const GroundPoint& at, double normal_up,
-                                   const MountainSurface& season,
-                                   const std::optional<std::array<double, 3>>& draped) const;
+  [[nodiscard]] Spectrum AlbedoAt(const GroundPoint& at, double normal_up,
+                                  const MountainSurface& season,
+                                  const std::optional<std::array<double, 3>>& draped) const;
   [[nodiscard]] bool HasLandCover() const { return drape_ && drape_->IsLandCover(); }
 
   GroundCover cover_;
   std::shared_ptr<const ColourDrape> drape_;
   BandsOfColour bands_of_colour_;
-  BandLight albedo_;
+  Spectrum albedo_;
   RoughDiffuse rough_;
   Glossy glossy_;
   Water water_;

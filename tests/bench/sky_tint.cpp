@@ -110,8 +110,8 @@ std::vector<std::vector<double>> SkiesOf(const Change& change, double sun_deg,
       const ViewRay ray = RayFromAngles(2.0, 90.0 - kElevations_deg[view], 180.0, 90.0 - sun_deg);
       const RaySamples<float> samples =
           air.Sample(ray, {.nodes = 24, .split_ozone = true, .dark_samples = true});
-      const Bands<float> once = air.Inscatter(air.Scatter(samples), ray.nu);
-      const Bands<float> more = multiple_scattering.InscatterAlong(samples, ray.nu);
+      const Spectrum once = air.Inscatter(air.Scatter(samples), ray.nu);
+      const Spectrum more = multiple_scattering.InscatterAlong(samples, ray.nu);
       for (std::size_t band = 0; band < some.size(); ++band) {
         skies[view].push_back(static_cast<double>(once[band] + more[band]) *
                               medium.solar_irradiance[band]);

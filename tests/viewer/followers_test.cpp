@@ -132,7 +132,7 @@ Place PlaceAt(double altitude_m) { return PlaceFromRadians(0.8, 0.0, altitude_m)
 
 DistantLight SunUp(double elevation_deg) {
   return {LightSource::kSun, tests::EyeUnderSun(0.0, elevation_deg).light, kSunAngularRadius_rad,
-          BandLight(4)};
+          Spectrum(4)};
 }
 
 // Frames with the same eye and sun until the tables shown are for them.

@@ -40,11 +40,11 @@ class Sky {
     const ViewRay ray = under(SunForAir(sun));
     const double nu_seen = under(sun).nu;
     const RaySamples<float> samples = air_.Sample(ray, {.dark_samples = true});
-    const Bands<float> once = air_.Inscatter(air_.Scatter(samples), nu_seen);
-    const Bands<float> more =
+    const Spectrum once = air_.Inscatter(air_.Scatter(samples), nu_seen);
+    const Spectrum more =
         request_.multiple_scattering->InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpen);
-    std::vector<double> radiance(once.count);
-    for (std::size_t band = 0; band < once.count; ++band) {
+    std::vector<double> radiance(once.size());
+    for (std::size_t band = 0; band < once.size(); ++band) {
       radiance[band] = static_cast<double>(once[band] + more[band]) *
                        medium_.solar_irradiance[band] / (sun.distance_au * sun.distance_au);
     }

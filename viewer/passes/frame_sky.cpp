@@ -29,9 +29,9 @@ std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
 }
 
 // Returns the irradiance of a level surface by a light and the sky that it lights.
-BandLight LevelLight(const DistantLight& source, const AirOfSky& air, double altitude_m) {
+Spectrum LevelLight(const DistantLight& source, const AirOfSky& air, double altitude_m) {
   const double mu = source.direction.seen.z;
-  BandLight light =
+  Spectrum light =
       air.air->multiple_scattering().SkyIrradiance(altitude_m, source.direction.for_air.z);
   if (mu > 0.0) {
     light = light + static_cast<float>(mu) * air.air->BeamLeft(altitude_m, mu);

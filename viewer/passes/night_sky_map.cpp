@@ -27,7 +27,7 @@ void Upload(const GlTexture& map, int unit, int columns, int rows,
 NightSkyMap NightSkyMapOver(const Place& eye, const UtcTime& now, const Medium& medium,
                             const BandColour& colour, const SceneSkyglow& towns) {
   const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad()));
-  std::optional<BandLight> town_light;
+  std::optional<Spectrum> town_light;
   if (towns.zenith) town_light = Skyglow(*towns.zenith, towns.ground_m, air, colour);
   const NightLight night(NightSky(eye, now), air, colour, {0.0, 0.0, 1.0},
                          std::max(eye.height_m, 0.0), town_light);

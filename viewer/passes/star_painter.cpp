@@ -119,7 +119,7 @@ StarPoint PointOf(const StarLight& light, const glm::dvec3& towards, const StarP
   const StarBell across = plane.BellPerPixel(at, 0), up = plane.BellPerPixel(at, 1);
   glm::vec4 radiance(0.0F);
   const auto per_sr = static_cast<float>(1.0 / plane.PixelSolidAngle(at.along));
-  for (std::size_t band = 0; band < light.irradiance.count; ++band)
+  for (std::size_t band = 0; band < light.irradiance.size(); ++band)
     radiance[static_cast<glm::length_t>(band)] = per_sr * light.irradiance[band];
   const glm::dvec2 centre = glm::floor(at.pixel);
   return {{centre.x - kStarReach, centre.y - kStarReach, centre.x, centre.y},

@@ -123,10 +123,10 @@ glm::vec4 GpuBandsOf(const std::vector<double>& per_band) {
   return {value[0], value[1], value[2], value[3]};
 }
 
-glm::vec4 GpuBandsOf(const BandLight& light) {
-  ALPENGLOW_ENSURE(light.count, <=, kGpuBands);
+glm::vec4 GpuBandsOf(const Spectrum& light) {
+  ALPENGLOW_ENSURE(light.size(), <=, kGpuBands);
   std::array<float, kGpuBands> value{};
-  std::copy_n(light.value.begin(), light.count, value.begin());
+  std::ranges::copy(light.values(), value.begin());
   return {value[0], value[1], value[2], value[3]};
 }
 

@@ -111,6 +111,6 @@ static_assert(offsetof(GroundBlock, pole) == 49 * sizeof(glm::vec4));
 
 /// Return one value per band and 0 for the remaining components.
 [[nodiscard]] glm::vec4 GpuBandsOf(const std::vector<double>& per_band);
-[[nodiscard]] glm::vec4 GpuBandsOf(const BandLight& light);
+[[nodiscard]] glm::vec4 GpuBandsOf(const Spectrum& light);
 
 }  // namespace alpenglow::viewer

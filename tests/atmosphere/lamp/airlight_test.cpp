@@ -198,8 +198,8 @@ TEST(Airlight, OfATableEqualsThatOfItsCone) {
 TEST(Airlight, EveryBandHasItsOwnExtinction) {
   LampAir air;
   LampLayer fog;
-  fog.scattering_per_m = Bands<double>(3);
-  fog.extinction_per_m = Bands<double>(3);
+  fog.scattering_per_m = SpectrumOf<double>(3);
+  fog.extinction_per_m = SpectrumOf<double>(3);
   for (std::size_t band = 0; band < 3; ++band) {
     fog.scattering_per_m[band] = 0.004 * static_cast<double>(band + 1);
     fog.extinction_per_m[band] = 0.006 * static_cast<double>(band + 1);
@@ -213,8 +213,8 @@ TEST(Airlight, EveryBandHasItsOwnExtinction) {
   const Lamp lamp = LampAt({60.0, 10.0, 15.0});
   const LampSegment segment = Along({1.0, 0.1, 0.2}, 150.0);
   const reference::LampLight truth = reference::AirlightAlong(air, lamp, segment);
-  const Bands<double> found = Airlight(air, lamp, segment);
-  ASSERT_EQ(found.count, 3U);
+  const SpectrumOf<double> found = Airlight(air, lamp, segment);
+  ASSERT_EQ(found.size(), 3U);
   for (std::size_t band = 0; band < 3; ++band) {
     EXPECT_NEAR(found[band] / truth.radiance[band], 1.0, 1e-3) << "band " << band;
   }

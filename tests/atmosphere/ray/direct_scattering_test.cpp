@@ -86,7 +86,7 @@ TEST(DirectScattering, IsRightInTallAirOverSmallPlanets) {
               direct.reference().Inscatter(direct.Scatter(ray, DirectMode::kNormal), ray.nu);
           const auto truth =
               exact.Inscatter(exact.Scatter(exact.Sample(ray, {.nodes = 32})), ray.nu);
-          for (std::size_t band = 0; band < truth.count; ++band) {
+          for (std::size_t band = 0; band < truth.size(); ++band) {
             EXPECT_NEAR(static_cast<double>(found[band]), truth[band], 2e-2 * truth[band])
                 << "radius " << medium.planet_radius_m << ", view " << zenith_deg << ", sun "
                 << sun_deg << ": columns within 2 (H / R)^2 of the scale height over the radius, "
@@ -100,7 +100,7 @@ TEST(DirectScattering, IsRightInTallAirOverSmallPlanets) {
 
 // Returns the relative error of the worst band of a ray.
 double ErrorOfRay(const DirectScattering& direct, const ScatteredOnce<float>& scattered,
-                  const ViewRay& ray, const Bands<double>& truth) {
+                  const ViewRay& ray, const SpectrumOf<double>& truth) {
   std::vector<double> errors;
   tests::AddErrors(direct.reference().Inscatter(scattered, ray.nu), truth, errors);
   double largest = 0.0;
@@ -132,7 +132,7 @@ TEST(DirectScattering, EdgeRaysAreFiniteAndNotNegative) {
     for (int i = 1; i <= 6000; ++i) {
       for (const DirectMode mode : kModes) {
         const ScatteredOnce<float> light = direct.Scatter(EdgeRay(i), mode);
-        for (std::size_t band = 0; band < light.rayleigh.count; ++band) {
+        for (std::size_t band = 0; band < light.rayleigh.size(); ++band) {
           ASSERT_TRUE(std::isfinite(light.rayleigh[band]) && light.rayleigh[band] >= 0.0F) << i;
           ASSERT_TRUE(std::isfinite(light.mie[band]) && light.mie[band] >= 0.0F) << i;
         }
@@ -192,8 +192,8 @@ TEST(DirectScattering, SegmentsOfLengthZeroAreExactlyZero) {
   const DirectScattering direct(MediumPreset("earth"));
   const ViewRay ray{100.0, 0.1, 0.5, 0.3, 0.0};
   const ScatteredOnce<float> light = direct.Scatter(ray, DirectMode::kNormal);
-  EXPECT_EQ(light.rayleigh, Bands<float>(light.rayleigh.count));
-  EXPECT_EQ(light.mie, Bands<float>(light.mie.count));
+  EXPECT_EQ(light.rayleigh, Spectrum(light.rayleigh.size()));
+  EXPECT_EQ(light.mie, Spectrum(light.mie.size()));
   EXPECT_EQ(direct.Sample(ray, {}).count, 0U);
 }
 

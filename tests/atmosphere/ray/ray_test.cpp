@@ -87,10 +87,10 @@ TEST(Ray, ShortRaysEndAtGroundOrTopOnlyIfTheyReachThem) {
   }
 }
 
-TEST(Bands, TooManyAreRefused) {
-  EXPECT_EQ(Bands<float>(kMaxBands).count, kMaxBands);
-  EXPECT_THROW(Bands<float>(kMaxBands + 1), InputError);
-  EXPECT_THROW(Bands<double>(512), InputError);
+TEST(Spectrum, TooManyAreRefused) {
+  EXPECT_EQ(Spectrum(kMaxBands).size(), kMaxBands);
+  EXPECT_THROW(Spectrum(kMaxBands + 1), InputError);
+  EXPECT_THROW(SpectrumOf<double>(512), InputError);
 }
 
 TEST(PlanetShadow, EndsOnAZenithViewWhereTheSunRises) {

@@ -26,8 +26,8 @@ namespace alpenglow::atmosphere {
 namespace {
 
 template <typename Real>
-Bands<Real> Inscatter(const SingleScattering<Real>& air, const ViewRay& ray,
-                      const Sampling& sampling) {
+SpectrumOf<Real> Inscatter(const SingleScattering<Real>& air, const ViewRay& ray,
+                           const Sampling& sampling) {
   return air.Inscatter(air.Scatter(air.Sample(ray, sampling)), ray.nu);
 }
 
@@ -130,7 +130,7 @@ TEST(SingleScattering, AirContinuesBelowAltitudeZeroInBothDirections) {
       const auto depth = exact.OpticalDepthAlong(there), other = exact.OpticalDepthAlong(back);
       const auto in_float = quick.OpticalDepthAlong(there);
       const auto truth = reference::OpticalDepthAlong(medium, there);
-      for (std::size_t band = 0; band < depth.count; ++band) {
+      for (std::size_t band = 0; band < depth.size(); ++band) {
         EXPECT_NEAR(depth[band], truth.tau[band], 2e-5 * truth.tau[band]) << "closed forms";
         EXPECT_NEAR(depth[band], other[band], 2e-5 * depth[band]);
         EXPECT_NEAR(static_cast<double>(in_float[band]), truth.tau[band], 1e-4 * truth.tau[band]);
@@ -144,7 +144,7 @@ TEST(SingleScattering, BelowAltitudeZeroDepthIsLengthTimesExtinction) {
   const BothWays ways = SegmentBetween(-400.0, -430.0, 10e3, medium.planet_radius_m, 60.0);
   for (const ViewRay& ray : {ways.there, ways.back}) {
     const auto depth = SingleScattering<double>(medium).OpticalDepthAlong(ray);
-    for (std::size_t band = 0; band < depth.count; ++band) {
+    for (std::size_t band = 0; band < depth.size(); ++band) {
       EXPECT_NEAR(
           depth[band],
           10e3 * (medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]),
@@ -165,7 +165,7 @@ TEST(SingleScattering, LightBelowAltitudeZeroAgreesWithTheReference) {
       for (const ViewRay& ray : {ways.there, ways.back}) {
         const auto truth = reference::SingleScatteringAlong(medium, ray).inscatter;
         const auto found = Inscatter(SingleScattering<double>(medium), ray, kFine);
-        for (std::size_t band = 0; band < found.count; ++band)
+        for (std::size_t band = 0; band < found.size(); ++band)
           EXPECT_NEAR(found[band], truth[band], 1e-3 * truth[band] + 1e-12);
       }
     }
@@ -431,9 +431,9 @@ TEST(SingleScattering, PhaseFunctionsInFloatEqualTheirTables) {
     for (int i = 0; i <= 3600; ++i) {
       const double share = i / 3600.0;  // more about the sun
       const double nu = std::cos(kPi * share * share);
-      const Bands<float> read = fast.AerosolPhases(nu);
-      const Bands<double> held = exact.AerosolPhases(nu);
-      for (std::size_t band = 0; band < held.count; ++band) {
+      const Spectrum read = fast.AerosolPhases(nu);
+      const SpectrumOf<double> held = exact.AerosolPhases(nu);
+      for (std::size_t band = 0; band < held.size(); ++band) {
         ASSERT_EQ(held[band], Phase(MiePhase(medium, band), nu));
         ASSERT_NEAR(static_cast<double>(read[band]) / held[band], 1.0, 3e-5)
             << "places among nodes in float; at " << 180.0 * share * share << " degrees";

@@ -164,7 +164,7 @@ TEST(RefractedBeam, AgreesWithTheRayEquationInMoleculesToOnePercent) {
                             equation.Follow(seen - kStep, height_m).refraction_rad) /
                            (2.0 * kStep);
       const double spread = std::cos(seen) / std::cos(seen - found.refraction_rad) / (1.0 - slope);
-      const Bands<float> left = beam.Left(air, height_m, std::sin(seen));
+      const Spectrum left = beam.Left(air, height_m, std::sin(seen));
       for (std::size_t band = 0; band < 3; ++band) {
         const double expected =
             spread * std::exp(-medium.rayleigh_scattering_per_m[band] * found.column_m);
@@ -243,7 +243,7 @@ TEST(RefractedBeam, IsNeverBrighterThanStraightRays) {
   const RefractedBeam beam(medium);
   for (const double height_m : {-50.0, 0.0, 9e3, 39e3, 41e3, 99e3, 400e3}) {
     for (const double mu : {-1.0, -0.05, 0.0, 0.01, 0.3, 1.0}) {
-      const Bands<float> over = beam.OverStraight(height_m, mu);
+      const Spectrum over = beam.OverStraight(height_m, mu);
       for (std::size_t band = 0; band < 3; ++band) {
         EXPECT_GE(over[band], 0.0F) << height_m << " m, " << mu;
         EXPECT_LE(over[band], 1.0F) << height_m << " m, " << mu;

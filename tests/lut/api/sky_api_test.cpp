@@ -20,7 +20,6 @@
 namespace alpenglow {
 namespace {
 
-using atmosphere::Bands;
 using atmosphere::Medium;
 using atmosphere::ViewRay;
 
@@ -46,9 +45,9 @@ const std::vector<LocalPoint>& Objects() {
   return objects;
 }
 
-void ExpectEqual(const Spectrum& spectrum, const Bands<float>& bands) {
-  ASSERT_EQ(spectrum.size(), bands.count);
-  for (std::size_t band = 0; band < bands.count; ++band) EXPECT_EQ(spectrum[band], bands[band]);
+void ExpectEqual(const Spectrum& spectrum, const Spectrum& bands) {
+  ASSERT_EQ(spectrum.size(), bands.size());
+  for (std::size_t band = 0; band < bands.size(); ++band) EXPECT_EQ(spectrum[band], bands[band]);
 }
 
 ViewRay RayTo(const LocalPoint& object, const Direction& to_sun) {

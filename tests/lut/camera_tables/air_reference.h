@@ -25,7 +25,7 @@ class AirReference {
       : exact_(air.medium()), air_(air), sky_(air.medium(), air.multiple_scattering()), eye_(eye) {}
 
   /// Returns the light of the whole ray, in the band.
-  [[nodiscard]] Bands<double> Sky(const AirMap& map, double angle, double azimuth) const {
+  [[nodiscard]] SpectrumOf<double> Sky(const AirMap& map, double angle, double azimuth) const {
     const ViewRay ray = RayOf(map, angle, azimuth);
     return sky_.Radiance(ray, SeenCosineOf(ray.mu, azimuth));
   }
@@ -36,14 +36,14 @@ class AirReference {
     ViewRay ray = RayOf(map, angle, azimuth);
     ray.length_m = 1000.0 * distance_km;
     const double nu_seen = SeenCosineOf(ray.mu, azimuth);
-    const Bands<double> single = exact_.Inscatter(
+    const SpectrumOf<double> single = exact_.Inscatter(
         exact_.Scatter(exact_.Sample(ray, {.nodes = 32, .split_ozone = true})), nu_seen);
-    const Bands<float> multiple_scattering = air_.multiple_scattering().InscatterAlong(
+    const Spectrum multiple_scattering = air_.multiple_scattering().InscatterAlong(
         air_.single_scattering().Sample(ray, {.nodes = 32, .dark_samples = true}), ray.nu, nu_seen,
         SegmentEnd::kOpen);
-    const Bands<double> left = exact_.TransmittanceAlong(ray);
+    const SpectrumOf<double> left = exact_.TransmittanceAlong(ray);
     AirToPoint to{glm::dvec4(0.0), glm::dvec4(0.0), glm::dvec4(1.0)};
-    for (std::size_t band = 0; band < left.count; ++band) {
+    for (std::size_t band = 0; band < left.size(); ++band) {
       const auto i = static_cast<glm::length_t>(band);
       to.single[i] = single[band];
       to.multiple_scattering[i] = static_cast<double>(multiple_scattering[band]);
@@ -140,9 +140,9 @@ inline AirErrors SkyErrors(const AirReference& reference, const AirReading& read
     const double u = 2.0 * Halton(i, 2) - 1.001, azimuth = kPi * Halton(i, 3);
     const double v = i % 2 == 0 ? u : u * u * u;
     const double angle = 0.998 * v * (v > 0.0 ? map.sky_range : map.ground_range);
-    const Bands<double> exact = reference.Sky(map, angle, azimuth);
+    const SpectrumOf<double> exact = reference.Sky(map, angle, azimuth);
     const glm::dvec4 read = reading.Sky(angle, azimuth);
-    for (std::size_t band = 0; band < exact.count; ++band) {
+    for (std::size_t band = 0; band < exact.size(); ++band) {
       pairs.emplace_back(exact[band], read[static_cast<glm::length_t>(band)]);
       mean += exact[band];
     }

@@ -90,9 +90,9 @@ TEST(AirTables, HaveTheAureoleAroundTheApparentSun) {
       for (const double azimuth_deg : {0.0, 0.3, 0.8, 2.0}) {
         const double angle = angle_deg * kRadiansPerDegree,
                      azimuth = azimuth_deg * kRadiansPerDegree;
-        const Bands<double> exact = reference.Sky(tables.map, angle, azimuth);
+        const SpectrumOf<double> exact = reference.Sky(tables.map, angle, azimuth);
         const glm::dvec4 read = reading.Sky(angle, azimuth);
-        for (std::size_t band = 0; band < exact.count; ++band)
+        for (std::size_t band = 0; band < exact.size(); ++band)
           worst =
               std::max(worst, std::abs(read[static_cast<glm::length_t>(band)] / exact[band] - 1.0));
       }
@@ -149,9 +149,9 @@ TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
     const double turn = kPi * Halton(i, 3);
     const double angle = sun + from_sun * std::cos(turn);
     const double azimuth = from_sun * std::sin(turn) / std::cos(angle - tables.map.horizon_dip);
-    const Bands<double> exact = reference.Sky(tables.map, angle, azimuth);
+    const SpectrumOf<double> exact = reference.Sky(tables.map, angle, azimuth);
     const glm::dvec4 read = reading.Sky(angle, azimuth);
-    for (std::size_t band = 0; band < exact.count; ++band) {
+    for (std::size_t band = 0; band < exact.size(); ++band) {
       EXPECT_NEAR(read[static_cast<glm::length_t>(band)] / exact[band], 1.0, 1.2e-2)
           << from_sun / kRadiansPerDegree << " degrees from the sun";
     }

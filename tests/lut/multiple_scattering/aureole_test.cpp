@@ -37,19 +37,19 @@ class AureoleAir {
       : medium_(medium), air_(medium), multiple_scattering_(medium, options) {}
 
   /// Returns light of all orders, per unit solar irradiance [1/sr].
-  [[nodiscard]] Bands<float> Radiance(const ViewRay& ray) const {
+  [[nodiscard]] Spectrum Radiance(const ViewRay& ray) const {
     const auto samples = air_.Sample(ray, {.nodes = 12, .dark_samples = true});
-    Bands<float> light = air_.Inscatter(air_.Scatter(samples), ray.nu);
-    const Bands<float> more = multiple_scattering_.InscatterAlong(samples, ray.nu);
-    for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
+    Spectrum light = air_.Inscatter(air_.Scatter(samples), ray.nu);
+    const Spectrum more = multiple_scattering_.InscatterAlong(samples, ray.nu);
+    for (std::size_t band = 0; band < light.size(); ++band) light[band] += more[band];
     return light;
   }
 
   /// Returns the luminance [cd/m^2].
   [[nodiscard]] double Luminance(const ViewRay& ray) const {
-    const Bands<float> light = Radiance(ray);
+    const Spectrum light = Radiance(ray);
     std::vector<double> radiance;
-    for (std::size_t band = 0; band < light.count; ++band)
+    for (std::size_t band = 0; band < light.size(); ++band)
       radiance.push_back(static_cast<double>(light[band]) * medium_.solar_irradiance[band]);
     const std::array<double, 3> rgb = BandColour(medium_.wavelengths_nm).LinearSrgb(radiance);
     return tests::Luminance(
@@ -125,9 +125,9 @@ double RmsErrorOfAureole(const Medium& four_bands, const std::vector<TracedAureo
   const AureoleAir air(medium, OptionsFor(medium));
   double squares = 0.0;
   for (const TracedAureole& view : views) {
-    const Bands<float> light =
+    const Spectrum light =
         air.Radiance(RayFromAngles(2.0, view.zenith_deg, view.azimuth_deg, view.sun_zenith_deg));
-    for (std::size_t band = 0; band < light.count; ++band)
+    for (std::size_t band = 0; band < light.size(); ++band)
       squares += std::pow(static_cast<double>(light[band]) / view.radiance[kFirst + band] - 1.0, 2);
   }
   return std::sqrt(squares / static_cast<double>((kLast - kFirst) * views.size()));
@@ -219,8 +219,8 @@ void ExpectMultipleScatteringOfEveryAzimuth(const Medium& medium,
                                (r + double{samples.altitude[s]}),
                            -1.0, 1.0));
           }
-          const Bands<float> expected = light.InscatterByMoments(lit, double{nus[k]});
-          for (std::size_t band = 0; band < expected.count; ++band) {
+          const Spectrum expected = light.InscatterByMoments(lit, double{nus[k]});
+          for (std::size_t band = 0; band < expected.size(); ++band) {
             EXPECT_NEAR(seen[k * light.bands() + band], expected[band], 1.2e-4F * brightest)
                 << altitude_m << " " << mu << " " << mu_s << " " << k;
           }

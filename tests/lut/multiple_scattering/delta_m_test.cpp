@@ -89,7 +89,7 @@ TEST(DeltaM, WithoutAerosolChangesNothing) {
   const SingleScattering<float> air(clear);
   const ViewRay ray = RayFromAngles(2.0, 50.0, 10.0, 60.0);
   const auto samples = air.Sample(ray, {.nodes = 12, .dark_samples = true});
-  const Bands<float> light = DeltaM(clear, 6).Along(samples, ray.nu);
+  const Spectrum light = DeltaM(clear, 6).Along(samples, ray.nu);
   for (std::size_t band = 0; band < 3; ++band) EXPECT_EQ(light[band], 0.0F);
 }
 
@@ -169,8 +169,8 @@ TEST(DeltaM, SegmentsThroughThickHazeHaveFiniteLight) {
         ray.length_m = length_m;
         const auto samples = air.Sample(ray, {.nodes = 12, .dark_samples = true});
         for (const SegmentEnd end : {SegmentEnd::kOpen, SegmentEnd::kOpaque}) {
-          const Bands<float> more = light.InscatterAlong(samples, ray.nu, end);
-          for (std::size_t band = 0; band < more.count; ++band)
+          const Spectrum more = light.InscatterAlong(samples, ray.nu, end);
+          for (std::size_t band = 0; band < more.size(); ++band)
             ASSERT_TRUE(std::isfinite(more[band])) << zenith_deg << " " << length_m;
         }
       }
@@ -188,8 +188,8 @@ TEST(DeltaM, TransmittanceEqualsTheClosedFormUpAndDown) {
   for (const auto& [altitude_m, zenith_deg] : views) {
     const ViewRay ray = RayFromAngles(altitude_m, zenith_deg, 60.0, 50.0);
     const auto samples = air.Sample(ray, {.nodes = 12, .dark_samples = true});
-    const Bands<float> clear = peak.WayTo(samples).clear, truth = air.TransmittanceAlong(ray);
-    for (std::size_t band = 0; band < clear.count; ++band)
+    const Spectrum clear = peak.WayTo(samples).clear, truth = air.TransmittanceAlong(ray);
+    for (std::size_t band = 0; band < clear.size(); ++band)
       EXPECT_NEAR(clear[band] / truth[band], 1.0F, 1e-3F) << altitude_m << " m, " << zenith_deg;
   }
 }
@@ -276,8 +276,8 @@ TEST(DeltaM, LightOfABackwardLobeIsFiniteAboveAllMolecules) {
     for (const double zenith_deg : {0.0, 50.0, 90.0}) {
       const ViewRay ray = RayFromAngles(2.0, zenith_deg, 0.0, 50.0);
       const auto samples = air.Sample(ray, {.nodes = 20, .dark_samples = true});
-      const Bands<float> light = peak.Along(samples, ray.nu),
-                         error = peak.BackwardError(samples, ray.nu);
+      const Spectrum light = peak.Along(samples, ray.nu),
+                     error = peak.BackwardError(samples, ray.nu);
       for (std::size_t band = 0; band < 3; ++band) {
         EXPECT_TRUE(std::isfinite(light[band])) << of_molecules_m << " m, " << zenith_deg;
         EXPECT_TRUE(std::isfinite(error[band])) << of_molecules_m << " m, " << zenith_deg;

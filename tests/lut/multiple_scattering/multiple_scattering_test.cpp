@@ -216,14 +216,14 @@ TEST(MultipleScattering, AGivenNumberOfOrdersEqualsPathsOfThatLength) {
   const SingleScattering<float> single_scattering(air);
   const RaySamples<float> samples =
       single_scattering.Sample(ray, {.nodes = 16, .split_ozone = false, .dark_samples = true});
-  const Bands<float> once = single_scattering.Inscatter(single_scattering.Scatter(samples), ray.nu);
+  const Spectrum once = single_scattering.Inscatter(single_scattering.Scatter(samples), ray.nu);
   const std::pair<int, std::array<double, 3>> traced[] = {{1, {0.0292002, 0.0132663, 0.00611043}},
                                                           {3, {0.0335968, 0.0140777, 0.00627687}}};
   for (const auto& [orders, truth] : traced) {
     const MultipleScattering light(air, {.exact_orders = orders});
     EXPECT_EQ(light.orders(), orders);
-    const Bands<float> more = light.InscatterAlong(samples, ray.nu);
-    for (std::size_t band = 0; band < more.count; ++band) {
+    const Spectrum more = light.InscatterAlong(samples, ray.nu);
+    for (std::size_t band = 0; band < more.size(); ++band) {
       EXPECT_NEAR(static_cast<double>(once[band] + more[band]) / truth[band], 1.0, 5e-3)
           << orders << " orders, band " << band << ": 4 standard errors and 0.1 % of the moments";
     }
@@ -502,7 +502,7 @@ TEST(MultipleScattering, ThinnestAndThickestLayersHaveLight) {
     for (const float value : light.values()) EXPECT_TRUE(std::isfinite(value));
     // More than nothing falls on the ground, and less than the sun.
     const auto sky = light.SkyIrradiance(0.0, 0.7);
-    for (std::size_t band = 0; band < sky.count; ++band) {
+    for (std::size_t band = 0; band < sky.size(); ++band) {
       EXPECT_GT(sky[band], 0.0F) << rayleigh_m << " " << mie_m;
       EXPECT_LT(sky[band], 1.0F) << rayleigh_m << " " << mie_m;
     }
@@ -637,8 +637,8 @@ TEST(MultipleScattering, NarrowPeaksLightTheGround) {
                                                              {60.0, {0.164096, 0.229872}}};
   for (const auto& [sun_zenith_deg, truth] : traced) {
     const double mu_s = std::cos(sun_zenith_deg * kRadiansPerDegree);
-    const Bands<float> found = light.SkyIrradiance(0.0, mu_s);
-    for (std::size_t band = 0; band < found.count; ++band) {
+    const Spectrum found = light.SkyIrradiance(0.0, mu_s);
+    for (std::size_t band = 0; band < found.size(); ++band) {
       EXPECT_NEAR(static_cast<double>(found[band]) / truth[band], 1.0, 0.05)
           << sun_zenith_deg
           << ": 4 standard errors and 3 %; without the peak 10 to 40 % are missing";

@@ -34,7 +34,7 @@ class Sky {
     const ScatteredOnce<double> once = fine_air_.Scatter(fine_air_.Sample(ray, {.nodes = 24}));
     const PolarisedLight first = PolarisedOnce(air_.medium(), air_.Scatter(samples), ray);
     const PolarisedLight more = light_.PolarisationAlong(samples, ray.nu);
-    const auto sum = [&](const Bands<float>& a, const Bands<float>& b) {
+    const auto sum = [&](const Spectrum& a, const Spectrum& b) {
       return static_cast<double>(a[band]) + static_cast<double>(b[band]);
     };
     return {fine_air_.Inscatter(once, ray.nu)[band] +
@@ -228,8 +228,8 @@ TEST(PolarisedLight, ValuesAtNodesEqualTheNodes) {
       EXPECT_NEAR(values[i], light.values()[sun * row + i], 1e-5F) << sun << " " << i;
   }
   for (const double mu_s : {1.0, 0.93, 0.3, -0.02}) {
-    const Bands<float> sky = light.SkyIrradiance(1000.0, mu_s);
-    const Bands<float> level = light.Irradiance(1000.0, mu_s, 1.0, 1.0);
+    const Spectrum sky = light.SkyIrradiance(1000.0, mu_s);
+    const Spectrum level = light.Irradiance(1000.0, mu_s, 1.0, 1.0);
     for (std::size_t band = 0; band < 3; ++band)
       EXPECT_NEAR(level[band], sky[band], 1e-4F * sky[band]) << mu_s;
   }

@@ -17,9 +17,9 @@ TEST(SolvedAir, DraftIsAccurateToAFewPercent) {
     EXPECT_EQ(full.solution(), AirSolution::kFull);
     EXPECT_EQ(draft.solution(), AirSolution::kDraft);
     for (const double mu_s : {1.0, 0.5, 0.1, -0.05}) {
-      const Bands<float> exact = full.multiple_scattering().SkyIrradiance(0.0, mu_s);
-      const Bands<float> quick = draft.multiple_scattering().SkyIrradiance(0.0, mu_s);
-      for (std::size_t band = 0; band < exact.count; ++band)
+      const Spectrum exact = full.multiple_scattering().SkyIrradiance(0.0, mu_s);
+      const Spectrum quick = draft.multiple_scattering().SkyIrradiance(0.0, mu_s);
+      for (std::size_t band = 0; band < exact.size(); ++band)
         EXPECT_NEAR(quick[band] / exact[band], 1.0F, mu_s > 0.0 ? 0.03F : 0.06F)
             << name << ", sun " << mu_s;
     }
@@ -37,9 +37,9 @@ TEST(SolvedAir, RaysOverAnotherPlaceUseItsSphere) {
 
 TEST(SolvedAir, BeamEqualsThatOfRefractedRays) {
   constexpr double kAltitude_m = 500.0, kMu = 0.02;
-  const Bands<float> straight = Earth().single_scattering().TransmittanceToSpace(kAltitude_m, kMu);
-  const Bands<float> factor = Earth().beam().OverStraight(kAltitude_m, kMu);
-  const Bands<float> beam = Earth().BeamLeft(kAltitude_m, kMu);
+  const Spectrum straight = Earth().single_scattering().TransmittanceToSpace(kAltitude_m, kMu);
+  const Spectrum factor = Earth().beam().OverStraight(kAltitude_m, kMu);
+  const Spectrum beam = Earth().BeamLeft(kAltitude_m, kMu);
   for (std::size_t band = 0; band < Earth().bands(); ++band)
     EXPECT_NEAR(beam[band], straight[band] * factor[band], 1e-6F * beam[band]) << "rounding";
 }

@@ -140,10 +140,10 @@ class MarsSky : public testing::Test {
   static std::array<double, 3> Sky(double sun_deg, double elevation_deg, double azimuth_deg) {
     const SkyView view(Mars().single_scattering(), Mars().multiple_scattering(), 2.0,
                        std::sin(sun_deg * kRadiansPerDegree));
-    const Bands<float> sky =
+    const Spectrum sky =
         view.Radiance((90.0 - elevation_deg) * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree);
     std::vector<double> radiance;
-    for (std::size_t band = 0; band < sky.count; ++band) {
+    for (std::size_t band = 0; band < sky.size(); ++band) {
       radiance.push_back(static_cast<double>(sky[band]) * Mars().medium().solar_irradiance[band]);
     }
     return BandColour(Mars().medium().wavelengths_nm).LinearSrgb(radiance);

@@ -267,8 +267,8 @@ TEST(ReportBaselines, FiveHundredTrapezoidsAgreeWithTheClosedForm) {
   for (const char* name : {"earth", "bruneton2017"}) {
     const SingleScattering<float> air(MediumPreset(name));
     for (const double mu : {0.05, 0.2, 1.0}) {
-      const Bands<float> closed = air.TransmittanceToSpace(0.0, mu);
-      const Bands<float> march =
+      const Spectrum closed = air.TransmittanceToSpace(0.0, mu);
+      const Spectrum march =
           MarchedTransmittance(air.medium(), {0.0, mu}, MarchRule::kTrapezoid, 500);
       // The trapezoid's own error, (step / scale height)^2 / 12 of the aerosol's depth.
       for (std::size_t band = 0; band < air.bands(); ++band)

@@ -150,10 +150,10 @@ double IlluminanceFromAbove(const HdrImage& image) {
 
 /// Returns the luminance [cd/m^2] of light of the earth that is given relative to the sun's.
 template <typename Real>
-double LuminanceOf(const Bands<Real>& relative) {
+double LuminanceOf(const SpectrumOf<Real>& relative) {
   static const BandColour colour(Earth().medium().wavelengths_nm);
   std::vector<double> light;
-  for (std::size_t band = 0; band < relative.count; ++band)
+  for (std::size_t band = 0; band < relative.size(); ++band)
     light.push_back(double{relative[band]} * Earth().medium().solar_irradiance[band]);
   return colour.Xyz(light)[1];
 }

@@ -33,7 +33,7 @@ double RadianceOf(const SolvedAir& lit, const ViewRay& ray, std::size_t band) {
 
 /// Returns Q or U of all orders, of a view to the right of the sun.
 double Evaluated(const SolvedAir& lit, const ViewRay& ray, std::size_t band,
-                 Bands<float> PolarisedLight::*part) {
+                 Spectrum PolarisedLight::*part) {
   const RaySamples<float> samples = SamplesOf(lit, ray);
   const PolarisedLight once =
       PolarisedOnce(lit.medium(), lit.single_scattering().Scatter(samples), ray);

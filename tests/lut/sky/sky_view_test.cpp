@@ -120,8 +120,8 @@ TEST(SkyView, IsFiniteAndNotNegativeEverywhere) {
     for (const double elevation_deg : {90.0, 0.0, -6.0, -18.0, -60.0, -90.0}) {
       const SkyView view = ViewOfEarth(altitude_m, elevation_deg);
       for (int i = 1; i <= 200; ++i) {
-        const Bands<float> light = view.Radiance(kPi * Halton(i, 2), 2.0 * kPi * Halton(i, 3));
-        for (std::size_t band = 0; band < light.count; ++band) {
+        const Spectrum light = view.Radiance(kPi * Halton(i, 2), 2.0 * kPi * Halton(i, 3));
+        for (std::size_t band = 0; band < light.size(); ++band) {
           EXPECT_TRUE(std::isfinite(light[band]) && light[band] >= 0.0F)
               << altitude_m << " m, sun at " << elevation_deg;
         }
@@ -161,7 +161,7 @@ TEST(SkyView, ARowEqualsSingleLookUps) {
   std::vector<float> row(azimuths.size() * view.stride());
   view.FillRow(1.4, prepared, row);
   for (std::size_t i = 0; i < azimuths.size(); ++i) {
-    const Bands<float> one = view.Radiance(1.4, azimuths[i]);
+    const Spectrum one = view.Radiance(1.4, azimuths[i]);
     for (std::size_t band = 0; band < view.bands(); ++band)
       EXPECT_FLOAT_EQ(row[i * view.stride() + band], one[band]);
   }
@@ -278,9 +278,9 @@ TEST(SkyView, DeepTwilightHasNegativeRedButNoNegativeLight) {
       const SkyView view = ViewOfEarth(altitude_m, elevation_deg);
       for (double zenith_deg = 0.5; zenith_deg < 180.0; zenith_deg += 3.0) {
         for (const double azimuth_deg : {0.0, 60.0, 120.0, 180.0}) {
-          const Bands<float> radiance = view.Radiance(Degrees(zenith_deg), Degrees(azimuth_deg));
+          const Spectrum radiance = view.Radiance(Degrees(zenith_deg), Degrees(azimuth_deg));
           std::vector<double> light;
-          for (std::size_t band = 0; band < radiance.count; ++band) {
+          for (std::size_t band = 0; band < radiance.size(); ++band) {
             EXPECT_GE(radiance[band], 0.0F) << elevation_deg << " " << zenith_deg;
             light.push_back(double{radiance[band]} * medium.solar_irradiance[band]);
           }

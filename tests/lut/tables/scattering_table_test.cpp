@@ -60,8 +60,8 @@ std::vector<float> TexelOf(const ScatteringTable& table, std::size_t nu, std::si
 template <typename Real>
 std::vector<Real> ValuesOf(const ScatteredOnce<Real>& light) {
   std::vector<Real> values;
-  for (const Bands<Real>* part : {&light.rayleigh, &light.mie}) {
-    for (std::size_t band = 0; band < part->count; ++band) values.push_back((*part)[band]);
+  for (const SpectrumOf<Real>* part : {&light.rayleigh, &light.mie}) {
+    for (std::size_t band = 0; band < part->size(); ++band) values.push_back((*part)[band]);
   }
   return values;
 }
@@ -145,8 +145,8 @@ void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
   const SingleScattering<float> air(table.medium());
   TableErrors absolute, relative;
   for (const auto& [ray, truth] : RaysOf(table.medium(), regime)) {
-    const Bands<float> value = air.Inscatter(table.Lookup(ray), ray.nu);
-    for (std::size_t band = 0; band < value.count; ++band) {
+    const Spectrum value = air.Inscatter(table.Lookup(ray), ray.nu);
+    for (std::size_t band = 0; band < value.size(); ++band) {
       absolute.Add(value[band], truth[band]);
       if (truth[band] > 0.0) relative.Add(double{value[band]} / truth[band], 1.0);
     }

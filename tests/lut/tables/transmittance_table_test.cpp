@@ -62,8 +62,8 @@ TEST(TransmittanceTable, ErrorIsBelowTheStatedBound) {
           -std::sqrt(h * (2.0 * medium.planet_radius_m + h)) / (medium.planet_radius_m + h);
       const double v = uniform(random);  // dense at the horizon
       const ViewRay ray{h, horizon + (1.0 - horizon) * v * v + 1e-9, 1.0, 1.0};
-      const Bands<float> looked_up = table.Lookup(ray.altitude_m, ray.mu);
-      for (std::size_t band = 0; band < looked_up.count; ++band) {
+      const Spectrum looked_up = table.Lookup(ray.altitude_m, ray.mu);
+      for (std::size_t band = 0; band < looked_up.size(); ++band) {
         errors.Add(looked_up[band], ReferenceTransmittance(medium, ray, band));
       }
     }
@@ -82,8 +82,8 @@ TEST(TransmittanceTable, SegmentsAreQuotientsOfLookUps) {
   for (int i = 0; i < 500; ++i) {
     ViewRay ray = RayFromAngles(20000.0 * uniform(random), 180.0 * uniform(random), 0.0, 0.0);
     ray.length_m = 50000.0 * uniform(random);
-    const Bands<float> looked_up = table.LookupAlong(ray);
-    for (std::size_t band = 0; band < looked_up.count; ++band) {
+    const Spectrum looked_up = table.LookupAlong(ray);
+    for (std::size_t band = 0; band < looked_up.size(); ++band) {
       ASSERT_GE(looked_up[band], 0.0F);
       ASSERT_LE(looked_up[band], 1.0F);
       ViewRay beyond = ray;

@@ -69,7 +69,7 @@ std::vector<ViewRay> RaysBetweenMountains(std::size_t count, double planet_radiu
   return rays;
 }
 
-Bands<float> Once(const Air& air, const ViewRay& ray, const SunlitPath* sunlit) {
+Spectrum Once(const Air& air, const ViewRay& ray, const SunlitPath* sunlit) {
   return air.single_scattering.Inscatter(air.aerial.Once(ray, sunlit, {}), ray.nu);
 }
 
@@ -86,10 +86,10 @@ Error OverMountains(const Medium& medium) {
     const auto truth = exact.Inscatter(
         exact.Scatter(exact.Sample(ray, {.nodes = 32, .split_ozone = true})), ray.nu);
     const auto through = exact.TransmittanceAlong(ray);
-    const Bands<float> found = Once(air, ray, nullptr);
-    const Bands<float> seen = air.aerial.Along(ray, {}).transmittance;
+    const Spectrum found = Once(air, ray, nullptr);
+    const Spectrum seen = air.aerial.Along(ray, {}).transmittance;
     error.nodes += static_cast<double>(air.aerial.Sample(ray, nullptr, {}).samples.Nodes());
-    for (std::size_t band = 0; band < truth.count; ++band) {
+    for (std::size_t band = 0; band < truth.size(); ++band) {
       const double relative = static_cast<double>(found[band]) / truth[band] - 1.0;
       error.rms += relative * relative;
       error.worst = std::max(error.worst, std::abs(relative));
@@ -127,9 +127,9 @@ TEST(AerialPerspective, LandBelowTheSeaHasAirInFrontOfIt) {
     const ViewRay ray{altitude_m, mu, 0.5, 0.5 * mu + 0.6 * std::sqrt(1.0 - mu * mu), 10e3, true};
     const auto truth = exact.Inscatter(exact.Scatter(exact.Sample(ray, {.nodes = 32})), ray.nu);
     const auto through = exact.TransmittanceAlong(ray);
-    const Bands<float> found = Once(air, ray, nullptr);
-    const Bands<float> seen = air.aerial.Along(ray, {}).transmittance;
-    for (std::size_t band = 0; band < truth.count; ++band) {
+    const Spectrum found = Once(air, ray, nullptr);
+    const Spectrum seen = air.aerial.Along(ray, {}).transmittance;
+    for (std::size_t band = 0; band < truth.size(); ++band) {
       EXPECT_NEAR(static_cast<double>(found[band]), truth[band], 5e-3 * truth[band]);
       EXPECT_NEAR(static_cast<double>(seen[band]), through[band], 1e-5) << altitude_m << " " << mu;
       EXPECT_LT(seen[band], 0.95F) << "10 km of air";
@@ -146,17 +146,17 @@ TEST(AerialPerspective, HazeBelowSpaceIsRightToATenthOfAPercent) {
     const ViewRay ray = tests::RayOfRegime(i, tests::kSunHeights[0], tests::RayView::kSpaceDown,
                                            air.single_scattering.medium());
     const auto truth = exact.Inscatter(exact.Scatter(exact.Sample(ray, {.nodes = 64})), ray.nu);
-    const Bands<float> found = Once(air, ray, nullptr);
-    for (std::size_t band = 0; band < truth.count; ++band, ++values)
+    const Spectrum found = Once(air, ray, nullptr);
+    for (std::size_t band = 0; band < truth.size(); ++band, ++values)
       squares += std::pow(static_cast<double>(found[band]) / truth[band] - 1.0, 2.0);
   }
   EXPECT_LT(std::sqrt(squares / values), 1e-3)
       << "root mean square, 12 nodes by the map of ray_map.glsl; by a rational map 7e-3";
 }
 
-double Sum(const Bands<float>& light) {
+double Sum(const Spectrum& light) {
   double sum = 0.0;
-  for (std::size_t band = 0; band < light.count; ++band) sum += static_cast<double>(light[band]);
+  for (std::size_t band = 0; band < light.size(); ++band) sum += static_cast<double>(light[band]);
   return sum;
 }
 
@@ -214,8 +214,8 @@ TEST(AerialPerspective, ShadeHasOnlyMultipleScattering) {
   const SunlitPath dark;
   EXPECT_EQ(Sum(Once(air, ray, &dark)), 0.0);
   EXPECT_GT(Sum(air.aerial.Along(ray, dark, {}).inscatter), 0.0);
-  const Bands<float> lit = air.aerial.Along(ray, {}).inscatter;
-  const Bands<float> shaded = air.aerial.Along(ray, dark, {}).inscatter;
+  const Spectrum lit = air.aerial.Along(ray, {}).inscatter;
+  const Spectrum shaded = air.aerial.Along(ray, dark, {}).inscatter;
   EXPECT_LT(Sum(shaded), 0.5 * Sum(lit)) << "no glow of the sun in shaded air";
 }
 
@@ -235,7 +235,7 @@ TEST(AerialPerspective, LightGrowsFromZeroWithTheDistance) {
   ViewRay ray{1500.0, 0.02, 0.1, 0.9, 0.0};
   const AirAlongRay none = air.aerial.Along(ray, {});
   EXPECT_EQ(Sum(none.inscatter), 0.0);
-  EXPECT_EQ(Sum(none.transmittance), static_cast<double>(none.transmittance.count));
+  EXPECT_EQ(Sum(none.transmittance), static_cast<double>(none.transmittance.size()));
   ray.length_m = 1000.0;
   const double per_metre = Sum(Once(air, ray, nullptr)) / 1000.0;
   ray.length_m = 1e-3;
@@ -252,7 +252,7 @@ TEST(AerialPerspective, BelowTheSphereAirIsFoundOverEveryDistance) {
       for (const double length_m : {1.0, 1e3, 15e3, 60e3}) {
         const ViewRay ray{eye_m, mu, 0.5, 0.3, length_m};
         const AirAlongRay found = air.aerial.Along(ray, {});
-        for (std::size_t band = 0; band < found.inscatter.count; ++band) {
+        for (std::size_t band = 0; band < found.inscatter.size(); ++band) {
           EXPECT_TRUE(std::isfinite(found.inscatter[band])) << eye_m << " " << mu;
           EXPECT_GE(found.inscatter[band], 0.0F) << eye_m << " " << mu;
           EXPECT_TRUE(found.transmittance[band] >= 0.0F && found.transmittance[band] <= 1.0F);
@@ -271,7 +271,7 @@ TEST(AerialPerspective, IsContinuousInTheDistanceToTheEndOfTheAir) {
       return air.aerial.Along({1500.0, mu, 0.3, 0.5, length_m}, {});
     };
     const double all = Sum(at(3e6).inscatter);
-    double before = 0.0, seen_before = static_cast<double>(at(0.0).transmittance.count);
+    double before = 0.0, seen_before = static_cast<double>(at(0.0).transmittance.size());
     for (double length_m = 1e-3; length_m < 3e6; length_m *= 1.01) {
       const AirAlongRay here = at(length_m);
       // A distance that grows by 1 % adds at most 1 % of the light.
@@ -316,8 +316,8 @@ TEST(AerialPerspective, HazeIsWithinHalfAPercentOfTracedPaths) {
     to_a_mountain.length_m = 3000.0;
     const RaySamples<float> way =
         aerial.Sample(to_a_mountain, nullptr, AerialPerspective::Nodes{}).samples;
-    const Bands<float> open = multiple_scattering.InscatterAlong(way, view.ray.nu);
-    const Bands<float> hidden =
+    const Spectrum open = multiple_scattering.InscatterAlong(way, view.ray.nu);
+    const Spectrum hidden =
         multiple_scattering.InscatterAlong(way, view.ray.nu, SegmentEnd::kOpaque);
     for (std::size_t band = 0; band < 3; ++band) {
       EXPECT_LT(hidden[band], open[band]);

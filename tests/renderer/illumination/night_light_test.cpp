@@ -47,9 +47,9 @@ MoonPosition MoonAtPhase(double degrees) {
   return moon;
 }
 
-BandLight MoonlightOf(const MoonPosition& moon, const Medium& medium) {
-  BandLight light(medium.wavelengths_nm.size());
-  for (std::size_t band = 0; band < light.count; ++band) {
+Spectrum MoonlightOf(const MoonPosition& moon, const Medium& medium) {
+  Spectrum light(medium.wavelengths_nm.size());
+  for (std::size_t band = 0; band < light.size(); ++band) {
     light[band] = static_cast<float>(medium.solar_irradiance[band] *
                                      MoonIrradiance(moon, 1.0, medium.wavelengths_nm[band]));
   }
@@ -95,8 +95,8 @@ Medium AirOfMaunaKea() {
 /// Returns the extinction of moonlight from the zenith [magnitudes].
 double ExtinctionOf(const SolvedAir& air) {
   const BandColour colour(air.medium().wavelengths_nm);
-  const BandLight left = air.single_scattering().TransmittanceToSpace(kMaunaKea_m, 1.0);
-  const BandLight moonlight = MoonlightOf(MoonAtPhase(0.0), air.medium());
+  const Spectrum left = air.single_scattering().TransmittanceToSpace(kMaunaKea_m, 1.0);
+  const Spectrum moonlight = MoonlightOf(MoonAtPhase(0.0), air.medium());
   return -2.5 *
          std::log10(colour.Xyz(InDouble(moonlight * left))[1] / colour.Xyz(InDouble(moonlight))[1]);
 }
@@ -107,7 +107,7 @@ TEST(Moonlight, LightsTheSkyAsMeasuredOnMaunaKea) {
   const AerialPerspective aerial(air.single_scattering(), air.multiple_scattering());
   ASSERT_NEAR(ExtinctionOf(air), kExtinction, 0.01);
   for (const double phase_deg : {20.0, 60.0, 90.0}) {
-    const BandLight moonlight = MoonlightOf(MoonAtPhase(phase_deg), air.medium());
+    const Spectrum moonlight = MoonlightOf(MoonAtPhase(phase_deg), air.medium());
     for (const double moon_zenith_deg : {20.0, 45.0, 60.0}) {
       for (const double zenith_deg : {10.0, 40.0, 60.0}) {
         for (const double azimuth_deg : {60.0, 120.0, 180.0}) {
@@ -130,9 +130,9 @@ TEST(Moonlight, LightsTheSkyAsMeasuredOnMaunaKea) {
 TEST(Moonlight, AFullMoonOverheadGivesAQuarterOfALux) {
   const SolvedAir& earth = tests::Earth();
   const BandColour colour(earth.medium().wavelengths_nm);
-  const BandLight moonlight = MoonlightOf(MoonAtPhase(5.0), earth.medium());
-  const BandLight on_ground = earth.single_scattering().TransmittanceToSpace(0.0, 1.0) +
-                              earth.multiple_scattering().SkyIrradiance(0.0, 1.0);
+  const Spectrum moonlight = MoonlightOf(MoonAtPhase(5.0), earth.medium());
+  const Spectrum on_ground = earth.single_scattering().TransmittanceToSpace(0.0, 1.0) +
+                             earth.multiple_scattering().SkyIrradiance(0.0, 1.0);
   const double lux = colour.Xyz(InDouble(moonlight * on_ground))[1];
   EXPECT_GT(lux, 0.25);
   EXPECT_LT(lux, 0.32);
@@ -146,14 +146,14 @@ struct Night {
       : height_m(eye_m),
         light(sky, tests::Earth().single_scattering(), colour, kZenith, eye_m,
               town_zenith ? Skyglow(*town_zenith, 0.0, tests::Earth().single_scattering(), colour)
-                          : BandLight()) {}
+                          : Spectrum()) {}
 
   /// Returns the luminance of the night sky in a direction, through the air [cd/m^2].
   [[nodiscard]] double Luminance(const glm::dvec3& direction) const {
-    const BandLight left =
+    const Spectrum left =
         tests::Earth().single_scattering().TransmittanceToSpace(height_m, direction.z);
-    BandLight seen = left * light.Above(direction);
-    for (std::size_t band = 0; band < seen.count; ++band)
+    Spectrum seen = left * light.Above(direction);
+    for (std::size_t band = 0; band < seen.size(); ++band)
       seen[band] += (1.0F - left[band]) * light.scattered()[band];
     return colour.Xyz(InDouble(seen))[1];
   }
@@ -175,8 +175,8 @@ double Magnitudes(double cd_per_m2) { return -2.5 * std::log10(cd_per_m2 / 10.8e
 TEST(Skyglow, IsDarkWithoutAir) {
   const Medium airless = tests::WithoutAir(tests::Earth().medium());
   const SingleScattering<float> air(airless);
-  const BandLight light = Skyglow(18.0, 0.0, air, BandColour(airless.wavelengths_nm));
-  for (std::size_t band = 0; band < light.count; ++band) EXPECT_EQ(light[band], 0.0F);
+  const Spectrum light = Skyglow(18.0, 0.0, air, BandColour(airless.wavelengths_nm));
+  for (std::size_t band = 0; band < light.size(); ++band) EXPECT_EQ(light[band], 0.0F);
 }
 
 TEST(NightLight, ADarkZenithHas21Point6MagnitudesAndGroundAMillilux) {

@@ -86,7 +86,7 @@ TEST(OccludedSkyIrradiance, OnAPlainEqualsTheIrradianceFromAbove) {
     }
     const auto open = sky.Irradiance(0.0, to_sun.z, SectorsOf(kUp), OpenTo(0.0F));
     const auto known = ThreeBandAir().multiple_scattering().SkyIrradiance(0.0, to_sun.z);
-    for (std::size_t band = 0; band < open.count; ++band) {
+    for (std::size_t band = 0; band < open.size(); ++band) {
       EXPECT_NEAR(open[band] / known[band], 1.0F, 0.02F)
           << "sun at " << elevation << "; the two integrate in different nodes";
     }
@@ -204,7 +204,7 @@ class Mountains {
         const auto sky = view_.Radiance(std::acos(std::clamp(d.z, -1.0, 1.0)), azimuth);
         sum.sky += kPi / rays * static_cast<double>(sky[1]);
       } else if (slopes) {
-        BandLight irradiance = Direct(hit->smooth_point, hit->normal, hit->geometric_normal);
+        Spectrum irradiance = Direct(hit->smooth_point, hit->normal, hit->geometric_normal);
         irradiance[1] += static_cast<float>(IrradianceByRays(*hit, 16, false).sky);
         ViewRay ray{from.z, d.z, to_sun_.z, glm::dot(d, to_sun_)};
         ray.length_m = hit->distance_m;
@@ -218,16 +218,16 @@ class Mountains {
   }
 
  private:
-  [[nodiscard]] BandLight Direct(const glm::dvec3& point, const glm::dvec3& normal,
-                                 const glm::dvec3& geometric) const {
+  [[nodiscard]] Spectrum Direct(const glm::dvec3& point, const glm::dvec3& normal,
+                                const glm::dvec3& geometric) const {
     const double cosine = glm::dot(normal, to_sun_);
     if (cosine <= 0.0 ||
         terrain_.Occluded(point, geometric, to_sun_, std::numeric_limits<double>::infinity()))
-      return BandLight(ThreeBandAir().single_scattering().bands());
+      return Spectrum(ThreeBandAir().single_scattering().bands());
     return static_cast<float>(cosine) *
            ThreeBandAir().single_scattering().TransmittanceToSpace(point.z, to_sun_.z);
   }
-  [[nodiscard]] BandLight Sent(const BandLight& irradiance) const {
+  [[nodiscard]] Spectrum Sent(const Spectrum& irradiance) const {
     return static_cast<float>(static_cast<double>(albedo_) / kPi) * irradiance;
   }
 
@@ -289,8 +289,8 @@ TEST(TerrainIrradiance, SlopesLightEachOtherWithoutAir) {
   const glm::dvec3 to_sun = SunAtElevation(30.0);
   TerrainIrradiance light(horizons, air, multiple_scattering, to_sun);
   const auto one = [&](const SlopePlace&) {
-    BandLight sent(air.bands());
-    std::fill_n(sent.value.begin(), sent.count, 1.0F);
+    Spectrum sent(air.bands());
+    std::ranges::fill(sent.values(), 1.0F);
     return sent;
   };
   light.AddSlopes(medium, one, to_sun.z);
@@ -299,9 +299,9 @@ TEST(TerrainIrradiance, SlopesLightEachOtherWithoutAir) {
     const auto hit =
         terrain.Intersect({450.0 * (i - 8), 170.0 * (i - 8), 9000.0}, {0.0, 0.0, -1.0});
     if (!hit) continue;
-    const BandLight irradiance =
+    const Spectrum irradiance =
         light.Irradiance({hit->smooth_point, hit->normal, kUp, hit->smooth_point.z, to_sun.z});
-    for (std::size_t band = 0; band < irradiance.count; ++band) {
+    for (std::size_t band = 0; band < irradiance.size(); ++band) {
       ASSERT_TRUE(std::isfinite(irradiance[band])) << i;
       most = std::max(most, irradiance[band]);
     }
@@ -346,8 +346,8 @@ TEST(TerrainIrradiance, ASeaMirrorsAFarCoastWithoutEdges) {
   light.AddSlopes(
       ThreeBandAir().medium(),
       [](const SlopePlace&) {
-        BandLight dark(ThreeBandAir().single_scattering().bands());
-        std::fill_n(dark.value.begin(), dark.count, 0.002F);
+        Spectrum dark(ThreeBandAir().single_scattering().bands());
+        std::ranges::fill(dark.values(), 0.002F);
         return dark;
       },
       to_sun.z);

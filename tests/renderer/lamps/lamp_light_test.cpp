@@ -59,7 +59,7 @@ TEST(LampLight, ACandelaIsACandelaInEveryColour) {
     scene.lights[0].temperature_k = kelvin;
     const LampSite site(scene);
     const double distance = glm::length(site.PositionOf(scene.lights[0]) - kLampEye);
-    const Bands<float> light = site.light.OnSurface(site.light.All(), facing);
+    const Spectrum light = site.light.OnSurface(site.light.All(), facing);
     EXPECT_NEAR(site.Luminance(light), 1000.0 / (distance * distance), 0.1 * 0.01)
         << kelvin << " K: 100 m of clear air take away and give less than 1 %";
     colours.push_back(site.colour.LinearSrgb(InDouble(light)));
@@ -110,7 +110,7 @@ TEST(LampLight, AnEyeInsideALampSeesItsLuminanceAllAround) {
   for (const glm::dvec3& towards :
        {glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, -0.6, -0.8)}) {
     for (const LampSite* site : {&at_eye, &beside_it}) {
-      const Bands<float> seen = site->light.Seen({0}, {kLampEye, kLampEye, towards, towards}, 1e-3);
+      const Spectrum seen = site->light.Seen({0}, {kLampEye, kLampEye, towards, towards}, 1e-3);
       EXPECT_NEAR(site->Luminance(seen) / luminance, 1.0, 1e-5)
           << "in floats, through 5 cm of air, which takes 1e-6 of the light";
     }
@@ -173,7 +173,7 @@ TEST(LampLight, PicturesKeepTheIntensityAlsoThroughALens) {
     const glm::dvec3 to_lamp = site.PositionOf(scene.lights[0]) - kLampEye;
     const glm::dvec3 towards = glm::normalize(to_lamp);
     const double area = Iris(blades).area() * std::pow(camera.BlurRadius(to_lamp), 2);
-    const Bands<float> seen =
+    const Spectrum seen =
         light.Seen(light.All(), {kLampEye, kLampEye, towards, towards}, camera.PixelAngle());
     EXPECT_NEAR(site.Luminance(seen) * area / sharp, 1.0, 0.25)
         << blades << " blades: the edge is as soft as a pixel, the blur 4 pixels";
@@ -233,10 +233,10 @@ TEST(LampLight, FogDimsLightBehindIt) {
   Scene scene = NightScene();
   scene.layers = {FogOver(0.0, 0.01, 50.0)};
   const LampSite site(scene);
-  const Bands<float> level = site.light.LayerTransmittance(kNorth, 100.0);
+  const Spectrum level = site.light.LayerTransmittance(kNorth, 100.0);
   EXPECT_NEAR(static_cast<double>(level[0]), std::exp(-std::exp(-0.8)), 1e-4)
       << "a kilometre of fog at 40 m, which the sphere's curvature hardly changes";
-  const Bands<float> down = site.light.LayerTransmittance({0.0, 0.0, -1.0}, 40.0);
+  const Spectrum down = site.light.LayerTransmittance({0.0, 0.0, -1.0}, 40.0);
   EXPECT_NEAR(static_cast<double>(down[0]), std::exp(-0.01 * 50.0 * (1.0 - std::exp(-0.8))), 1e-4);
 }
 
@@ -441,7 +441,7 @@ TEST(LampExtremes, ThePlanetHidesALampBeyondTheHorizon) {
     const CameraRays camera = CameraOn(site.ground, scene.camera, {}, 160, 90).middle();
     const LampLight light = site.light.SeenBy(camera);
     const glm::dvec3 to_lamp = glm::normalize(site.PositionOf(scene.lights[0]) - camera.eye());
-    const Bands<float> seen =
+    const Spectrum seen =
         light.Seen(light.All(), {camera.eye(), camera.eye(), to_lamp, to_lamp}, 1e-3);
     EXPECT_EQ(site.Luminance(seen) > 0.0, is_seen) << far_m;
     // Air along a ray to the sea is beyond the horizon of a far lamp.

@@ -36,7 +36,7 @@ std::vector<LampLayer> LayersFor(const HazyAir& air) {
     LampLayer layer;
     layer.scale_height_m = haze.scale_height_m;
     layer.base_m = haze.base_m;
-    layer.scattering_per_m = layer.extinction_per_m = Bands<double>(1);
+    layer.scattering_per_m = layer.extinction_per_m = SpectrumOf<double>(1);
     layer.scattering_per_m[0] = layer.extinction_per_m[0] = haze.per_m;
     if (haze.g == 0.0) layer.phase = {.kind = PhaseKind::kRayleigh};
     if (haze.g != 0.0) layer.phase = tests::LobeOf(haze.g);

@@ -22,7 +22,7 @@ constexpr glm::dvec3 kGlowUp(0.0, 0.0, 1.0);
 LampLayer LayerOf(double per_m, double scale_height_m, const PhaseFunction& phase) {
   LampLayer layer;
   layer.scale_height_m = scale_height_m;
-  layer.scattering_per_m = layer.extinction_per_m = Bands<double>(1);
+  layer.scattering_per_m = layer.extinction_per_m = SpectrumOf<double>(1);
   layer.scattering_per_m[0] = layer.extinction_per_m[0] = per_m;
   layer.phase = phase;
   return layer;

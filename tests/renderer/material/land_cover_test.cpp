@@ -365,7 +365,7 @@ TEST(BandsOfColour, AreTheAlbedosOfColours) {
   for (const std::array<double, 3>& rgb :
        {std::array{0.2, 0.2, 0.2}, {0.1, 0.3, 0.2}, {0.5, 0.35, 0.3}}) {
     const std::vector<double> known = AlbedoFromLinearSrgb(rgb, wavelengths);
-    const BandLight albedo = bands.Albedo(rgb);
+    const Spectrum albedo = bands.Albedo(rgb);
     for (std::size_t band = 0; band < known.size(); ++band)
       EXPECT_NEAR(static_cast<double>(albedo[band]), known[band], 1e-6);
   }

@@ -19,9 +19,9 @@ namespace {
 
 const std::vector<double> kWavelengths_nm{450.0, 500.0, 550.0, 600.0, 650.0};
 
-Bands<float> Flat(float albedo) {
-  Bands<float> bands(kWavelengths_nm.size());
-  for (std::size_t band = 0; band < bands.count; ++band) bands[band] = albedo;
+Spectrum Flat(float albedo) {
+  Spectrum bands(kWavelengths_nm.size());
+  for (std::size_t band = 0; band < bands.size(); ++band) bands[band] = albedo;
   return bands;
 }
 
@@ -31,7 +31,7 @@ struct Model {
   std::function<double(const ReflectionAngles&)> brdf;
 };
 
-double Band0(const Bands<float>& bands) { return static_cast<double>(bands[0]); }
+double Band0(const Spectrum& bands) { return static_cast<double>(bands[0]); }
 
 std::vector<Model> Models() {
   std::vector<Model> models;
@@ -102,7 +102,7 @@ TEST(Reflectance, ConservesEnergy) {
 }
 
 TEST(RoughDiffuse, WithoutRoughnessIsLambertian) {
-  const Bands<float> albedo = Flat(0.3F);
+  const Spectrum albedo = Flat(0.3F);
   const RoughDiffuse smooth(0.0);
   for (const double mu : {0.05, 0.5, 1.0}) {
     EXPECT_FLOAT_EQ(smooth.Brdf(albedo, {mu, 0.3, 0.1})[2], 0.3F / static_cast<float>(kPi));
@@ -236,7 +236,7 @@ TEST(Water, MirrorsTheSkyByTheMeanReflectanceOfVisibleFaces) {
 }
 
 TEST(Water, AClearSeaIsBlue) {
-  const Bands<float> under = Water(5.0, kWavelengths_nm).BodyAlbedo(1.0);
+  const Spectrum under = Water(5.0, kWavelengths_nm).BodyAlbedo(1.0);
   EXPECT_GT(under[0], 0.01F) << "a few percent in blue: Morel, Prieur (1977)";
   EXPECT_LT(under[0], 0.06F);
   EXPECT_LT(under[4], 0.1F * under[0]) << "water absorbs red";
@@ -268,11 +268,11 @@ TEST(Snow, AlbedoIsTheIntegralOfTheDistribution) {
 TEST(Snow, IsAsBrightAsMeasured) {
   // Grenfell, Warren, Mullen (1994), J. Geophys. Res. 99, 18669: 0.96 to 0.98 and more from 450 to
   // 600 nm at the South Pole, grains of 0.1 mm radius.
-  const Bands<float> fresh = Snow(2e-4, kWavelengths_nm).SphericalAlbedo();
+  const Spectrum fresh = Snow(2e-4, kWavelengths_nm).SphericalAlbedo();
   EXPECT_GT(fresh[0], 0.96F);
   EXPECT_GT(fresh[3], 0.96F);
-  const Bands<float> old = Snow(2e-3, kWavelengths_nm).SphericalAlbedo();
-  for (std::size_t band = 0; band < old.count; ++band) EXPECT_LT(old[band], fresh[band]);
+  const Spectrum old = Snow(2e-3, kWavelengths_nm).SphericalAlbedo();
+  for (std::size_t band = 0; band < old.size(); ++band) EXPECT_LT(old[band], fresh[band]);
   EXPECT_LT(old[4], 0.92F) << "coarse grains absorb red";
 }
 
@@ -289,7 +289,7 @@ double MeanFresnel(double index) {
 }
 
 float WetGrey(double dry, double wetness) {
-  Bands<float> albedo(1);
+  Spectrum albedo(1);
   albedo[0] = static_cast<float>(dry);
   return Wetted(albedo, wetness)[0];
 }

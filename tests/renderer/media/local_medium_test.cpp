@@ -51,8 +51,8 @@ class GlowingSheet final : public LocalMedium {
   class OnOneRay final : public MediumOnRay {
    public:
     explicit OnOneRay(const GlowingSheet& sheet) : sheet_(sheet) {}
-    void AddSource(const LightOnPoint&, double density, BandLight& sum) const override {
-      for (std::size_t band = 0; band < sum.count; ++band)
+    void AddSource(const LightOnPoint&, double density, Spectrum& sum) const override {
+      for (std::size_t band = 0; band < sum.size(); ++band)
         sum[band] += static_cast<float>(density * sheet_.optics().emission_per_m[band]);
     }
 
@@ -68,9 +68,9 @@ class GlowingSheet final : public LocalMedium {
       return std::make_unique<OnOneRay>(sheet_);
     }
     void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
-                         Bands<double>& depth) const override {
+                         SpectrumOf<double>& depth) const override {
       const double column = sheet_.Column(point, to_disk, INFINITY);
-      for (std::size_t band = 0; band < depth.count; ++band)
+      for (std::size_t band = 0; band < depth.size(); ++band)
         depth[band] += column * sheet_.optics().extinction_per_m[band];
     }
 
@@ -78,8 +78,8 @@ class GlowingSheet final : public LocalMedium {
     const GlowingSheet& sheet_;
   };
 
-  [[nodiscard]] static Bands<double> Of(double value) {
-    Bands<double> bands(3);
+  [[nodiscard]] static SpectrumOf<double> Of(double value) {
+    SpectrumOf<double> bands(3);
     for (std::size_t band = 0; band < 3; ++band) bands[band] = value;
     return bands;
   }
@@ -120,7 +120,7 @@ TEST(LocalMedium, AnyKindIsMarchedThroughItsInterface) {
   const MarchedLight light = stage.Lit({sheet}).Along(kOrigin, {0.0, 1.0, 0.0}, 1e3, nullptr);
   ViewRay to{50.0, 0.0, 0.0, 0.0};
   to.length_m = 100.5;
-  const BandLight air = stage.air.single_scattering().TransmittanceAlong(to);
+  const Spectrum air = stage.air.single_scattering().TransmittanceAlong(to);
   for (std::size_t band = 0; band < 3; ++band) {
     EXPECT_NEAR(static_cast<double>(light.radiance[band] / air[band]), 6.0 * -std::expm1(-0.5),
                 1e-3)
@@ -132,8 +132,8 @@ TEST(LocalMedium, AnyKindIsMarchedThroughItsInterface) {
 TEST(LocalMedium, AnyKindCastsItsShadowThroughItsInterface) {
   const NightStage stage;
   const MediaLight lit = stage.Lit({std::make_shared<const GlowingSheet>(0.5, 3.0)});
-  const BandLight behind = lit.BeamLeft(kOrigin, {0.0, 1.0, 0.0});
-  const BandLight beside = lit.BeamLeft(kOrigin, {0.0, -1.0, 0.0});
+  const Spectrum behind = lit.BeamLeft(kOrigin, {0.0, 1.0, 0.0});
+  const Spectrum beside = lit.BeamLeft(kOrigin, {0.0, -1.0, 0.0});
   for (std::size_t band = 0; band < 3; ++band) {
     EXPECT_NEAR(static_cast<double>(behind[band]), std::exp(-0.5), 1e-6);
     EXPECT_EQ(beside[band], 1.0F);
@@ -177,7 +177,7 @@ TEST(LocalMedium, TwoThinLayersScatterAsOne) {
   NightStage stage;
   stage.light.source.direction = Unrefracted({0.0, 0.6, 0.8});
   const auto layer_of = [&](double per_m) {
-    MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), {}};
+    MediumOptics optics{SpectrumOf<double>(3), SpectrumOf<double>(3), SpectrumOf<double>(3), {}};
     for (std::size_t band = 0; band < 3; ++band)
       optics.extinction_per_m[band] = optics.scattering_per_m[band] = per_m;
     return std::make_shared<const ExponentialLayer>(
@@ -185,8 +185,8 @@ TEST(LocalMedium, TwoThinLayersScatterAsOne) {
   };
   const MediaLight one = stage.Lit({layer_of(2e-6)});
   const MediaLight two = stage.Lit({layer_of(1e-6), layer_of(1e-6)});
-  const BandLight a = one.Along(kOrigin, {0.0, 1.0, 0.0}, 500.0, nullptr).radiance;
-  const BandLight b = two.Along(kOrigin, {0.0, 1.0, 0.0}, 500.0, nullptr).radiance;
+  const Spectrum a = one.Along(kOrigin, {0.0, 1.0, 0.0}, 500.0, nullptr).radiance;
+  const Spectrum b = two.Along(kOrigin, {0.0, 1.0, 0.0}, 500.0, nullptr).radiance;
   for (std::size_t band = 0; band < 3; ++band)
     EXPECT_NEAR(static_cast<double>(b[band] / a[band]), 1.0, 1e-3)
         << "each is solved without the other; their depth is 8e-5";

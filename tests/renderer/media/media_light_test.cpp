@@ -60,7 +60,7 @@ struct MediaStage {
   }
   /// Returns the sun's light, before scattering, at a point as an eye 50 m up sees it through 300 m
   /// of air.
-  [[nodiscard]] BandLight SunSeen(const glm::dvec3& point, double mu) const {
+  [[nodiscard]] Spectrum SunSeen(const glm::dvec3& point, double mu) const {
     const LocalLight sun = LocalLightAt(geometry, point, light.source);
     ViewRay to;
     to.altitude_m = 50.0;
@@ -77,7 +77,8 @@ const MediaStage& TheStage() {
 }
 
 MediumOptics Optics(double extinction, double albedo, double emission = 0.0) {
-  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), tests::LobeOf(0.4)};
+  MediumOptics optics{SpectrumOf<double>(3), SpectrumOf<double>(3), SpectrumOf<double>(3),
+                      tests::LobeOf(0.4)};
   for (std::size_t band = 0; band < 3; ++band) {
     optics.extinction_per_m[band] = extinction * (1.0 + 0.2 * static_cast<double>(band));
     optics.scattering_per_m[band] = albedo * optics.extinction_per_m[band];
@@ -103,15 +104,15 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
   const MediaLight lit = stage.Lit({Box({0.0, 300.0, 20.0}, {50.0, 20.0, 60.0}, optics)});
   const glm::dvec3 look(0.0, 1.0, 0.0), there(0.0, 300.0, 50.0);
   const MarchedLight light = lit.Along(kMediaEye, look, INFINITY, nullptr);
-  const BandLight direct = stage.SunSeen(there, 0.0);
+  const Spectrum direct = stage.SunSeen(there, 0.0);
   ViewRay to;
   to.altitude_m = 50.0;
   to.mu = 0.0;
   to.length_m = 300.0;
-  const BandLight view =
+  const Spectrum view =
       stage.air.single_scattering().TransmittanceAlong(to) * stage.light.source.irradiance;
   const SkyMoments sky(stage.air.multiple_scattering(), stage.geometry.UpAt(there), kToSun, {50.0});
-  const BandLight from_sky = sky.Towards(
+  const Spectrum from_sky = sky.Towards(
       look,
       LegendreCoefficients(optics.phase, stage.air.multiple_scattering().options().degree))[0];
   for (std::size_t band = 0; band < 3; ++band) {
@@ -128,8 +129,8 @@ TEST(SkyMoments, IsotropicScatteringIsTheSameInAllDirections) {
   const MediaStage& stage = TheStage();
   const SkyMoments sky(stage.air.multiple_scattering(), {0.0, 0.0, 1.0}, kToSun, {0.0, 1000.0});
   const std::vector<double> isotropic{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  const BandLight up = sky.Towards({0.0, 0.0, 1.0}, isotropic)[0];
-  const BandLight along = sky.Towards({1.0, 0.0, 0.0}, isotropic)[0];
+  const Spectrum up = sky.Towards({0.0, 0.0, 1.0}, isotropic)[0];
+  const Spectrum along = sky.Towards({1.0, 0.0, 0.0}, isotropic)[0];
   for (std::size_t band = 0; band < 3; ++band) {
     EXPECT_NEAR(static_cast<double>(up[band] / along[band]), 1.0, 1e-5);
   }
@@ -182,8 +183,8 @@ TEST(MediaLight, TwoVolumesDimLightOneAfterTheOther) {
   const auto left = [](const MediaList& media) {
     return TheStage().Lit(media).BeamLeft(glm::dvec3(0.0), kToSun);
   };
-  const BandLight product = left({low}) * left({high});
-  const BandLight both = left({low, high}), swapped = left({high, low});
+  const Spectrum product = left({low}) * left({high});
+  const Spectrum both = left({low, high}), swapped = left({high, low});
   for (std::size_t band = 0; band < 3; ++band) {
     EXPECT_LT(left({low})[band], 0.8F);
     EXPECT_NEAR(static_cast<double>(both[band] / product[band]), 1.0, 1e-6);
@@ -192,7 +193,8 @@ TEST(MediaLight, TwoVolumesDimLightOneAfterTheOther) {
 }
 
 std::shared_ptr<const ExponentialLayer> FogMedium(double extinction, double scale_height) {
-  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), DropletPhase(12.0)};
+  MediumOptics optics{SpectrumOf<double>(3), SpectrumOf<double>(3), SpectrumOf<double>(3),
+                      DropletPhase(12.0)};
   for (std::size_t band = 0; band < 3; ++band) {
     optics.extinction_per_m[band] = optics.scattering_per_m[band] = extinction;
   }
@@ -221,11 +223,11 @@ TEST(MediaLight, WhiteFogOverBlackGroundConservesEnergy) {
   const MediaStage stage(over_black);
   const MediaLight lit = stage.Lit({FogMedium(0.02, 60.0)});
   const double mu_s = kToSun.z;
-  const BandLight sun = stage.air.BeamLeft(60.0, mu_s);
-  const BandLight sky = over_black.multiple_scattering().SkyIrradiance(0.0, mu_s);
+  const Spectrum sun = stage.air.BeamLeft(60.0, mu_s);
+  const Spectrum sky = over_black.multiple_scattering().SkyIrradiance(0.0, mu_s);
   const SkyThroughMedia below = lit.SkyOnSurface(0.0, 1.0);
   const SkyThroughMedia above = lit.SkyOnSurface(5e4, -1.0);
-  const BandLight beam = lit.BeamLeft({0.0, 0.0, 0.0}, kToSun);
+  const Spectrum beam = lit.BeamLeft({0.0, 0.0, 0.0}, kToSun);
   for (std::size_t band = 0; band < 3; ++band) {
     const double in = mu_s * static_cast<double>(sun[band]) + static_cast<double>(sky[band]);
     const double out =
@@ -261,7 +263,7 @@ TEST(MediaLight, LampsLightAVolumeLikeHomogeneousAir) {
 TEST(DimmedByMedia, LightIsDimmedByTheMediaInFrontOfIt) {
   // The slab has a transmittance of 0.3 between 100 and 200 m. Light grows as 1 - exp(-t / 500).
   const auto upto = [](double t) {
-    BandLight light(1);
+    Spectrum light(1);
     light[0] = static_cast<float>(-std::expm1(-t / 500.0));
     return light;
   };
@@ -271,7 +273,7 @@ TEST(DimmedByMedia, LightIsDimmedByTheMediaInFrontOfIt) {
   double expected = -std::expm1(-100.0 / 500.0);
   for (int i = 0; i < kPieces; ++i) {
     const double a = 100.0 + 100.0 * i / kPieces, b = 100.0 + 100.0 * (i + 1) / kPieces;
-    MarchedPiece piece{a, b, BandLight(1), BandLight(1), BandLight(1), BandLight(1)};
+    MarchedPiece piece{a, b, Spectrum(1), Spectrum(1), Spectrum(1), Spectrum(1)};
     piece.transmittance[0] = static_cast<float>(std::exp(-k * (b - 100.0)));
     piece.mean_transmittance[0] = static_cast<float>(
         (std::exp(-k * (a - 100.0)) - std::exp(-k * (b - 100.0))) / (k * (b - a)));
@@ -283,9 +285,9 @@ TEST(DimmedByMedia, LightIsDimmedByTheMediaInFrontOfIt) {
     expected += std::exp(-k * (t - 100.0)) * std::exp(-t / 500.0) / 500.0 * 100.0 / kSteps;
   }
   expected += 0.3 * std::exp(-200.0 / 500.0);
-  BandLight whole(1);
+  Spectrum whole(1);
   whole[0] = 1.0F;
-  const BandLight dimmed = DimmedByMedia(pieces, upto, whole, Behind::kAll);
+  const Spectrum dimmed = DimmedByMedia(pieces, upto, whole, Behind::kAll);
   EXPECT_NEAR(static_cast<double>(dimmed[0]) / expected, 1.0, 1e-3);
 }
 
@@ -296,15 +298,15 @@ TEST(LayerLight, IsNowhereNegative) {
     MediumOptics optics = Optics(0.02, 1.0);
     optics.phase = tests::LobeOf(g);
     const ExponentialLayer layer(shape, optics);
-    BandLight sun(3);
-    std::fill_n(sun.value.begin(), sun.count, 0.8F);
+    Spectrum sun(3);
+    std::ranges::fill(sun.values(), 0.8F);
     const LayerLight lit(layer, stage.air.multiple_scattering(), Unrefracted(kToSun), sun);
     for (const double height_m : {0.0, 10.0, 60.0, 200.0}) {
       for (const double z : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const glm::dvec3 look(std::sqrt(1.0 - z * z), 0.0, z);
         // Sunlight behind an optically thick wall: only the glow is left.
         const LayerLight::Scattered light = lit.At(lit.LookAlong(look), height_m, sun, sun, 30.0);
-        const BandLight ground = lit.OnSurface(height_m, z);
+        const Spectrum ground = lit.OnSurface(height_m, z);
         for (std::size_t band = 0; band < 3; ++band) {
           EXPECT_GE(light.of_sun[band], 0.0F) << g << " " << height_m << " " << z;
           EXPECT_GE(light.of_sky[band], 0.0F) << g << " " << height_m << " " << z;

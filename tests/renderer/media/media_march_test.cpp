@@ -24,13 +24,15 @@ std::shared_ptr<const LocalVolume> Body(Shape shape, const glm::dvec3& bottom,
   placement.shape = shape;
   placement.bottom = bottom;
   placement.size_m = size;
-  MediumOptics optics{Bands<double>(1), Bands<double>(1), Bands<double>(1), PhaseFunction{}};
+  MediumOptics optics{SpectrumOf<double>(1), SpectrumOf<double>(1), SpectrumOf<double>(1),
+                      PhaseFunction{}};
   optics.extinction_per_m[0] = extinction;
   return std::make_shared<const LocalVolume>(placement, scale_height, std::move(grid), optics);
 }
 
 std::shared_ptr<const ExponentialLayer> Layer(double base, double scale_height, double extinction) {
-  MediumOptics optics{Bands<double>(1), Bands<double>(1), Bands<double>(1), PhaseFunction{}};
+  MediumOptics optics{SpectrumOf<double>(1), SpectrumOf<double>(1), SpectrumOf<double>(1),
+                      PhaseFunction{}};
   optics.extinction_per_m[0] = extinction;
   return std::make_shared<const ExponentialLayer>(
       LayerShape{base, scale_height, 6371e3, 120e3, std::nullopt}, optics);
@@ -39,7 +41,7 @@ std::shared_ptr<const ExponentialLayer> Layer(double base, double scale_height, 
 /// Returns the source for which L = B (1 - T): extinction times B.
 MediaSource Glowing(const LocalMedia& media, double radiance) {
   return [&media, radiance](double, const glm::dvec3&, std::span<const double> densities) {
-    BandLight light(1);
+    Spectrum light(1);
     for (std::size_t m = 0; m < densities.size(); ++m) {
       light[0] += static_cast<float>(densities[m] * radiance *
                                      media.all()[m]->optics().extinction_per_m[0]);
@@ -77,7 +79,7 @@ TEST(MarchMedia, ThinBodyShinesAsItsSourceTimesItsLength) {
   const MarchedLight light =
       MarchMedia(sphere, glm::dvec3(0.0), {0.0, 1.0, 0.0}, INFINITY,
                  [](double, const glm::dvec3&, std::span<const double> density) {
-                   BandLight source(1);
+                   Spectrum source(1);
                    source[0] = static_cast<float>(3.0 * density[0]);
                    return source;
                  });
@@ -133,7 +135,7 @@ TEST(MarchMedia, KeepsItsToleranceAgainstFineSteps) {
          Layer(-10.0, 25.0, 0.02 * extinction)},
         1);
     const MediaSource source = [&](double, const glm::dvec3& point, std::span<const double> rho) {
-      BandLight light(1);
+      Spectrum light(1);
       for (std::size_t m = 0; m < rho.size(); ++m) {
         light[0] += static_cast<float>(rho[m] * media.all()[m]->optics().extinction_per_m[0] *
                                        Striped(point));

@@ -229,7 +229,7 @@ SharedSampleFilter Seen(PixelFilter::Kind kind, int rays,
   for (int y = 0; y < kSharedSide; ++y) {
     for (int x = 0; x < kSharedSide; ++x) {
       for (int i = 0; i < rays_at(x, y); ++i) {
-        SeenRay ray{filter.Offset(uniform(random)), filter.Offset(uniform(random)), BandLight(2)};
+        SeenRay ray{filter.Offset(uniform(random)), filter.Offset(uniform(random)), Spectrum(2)};
         ray.radiance[0] = static_cast<float>(light(x + ray.right, y + ray.down));
         ray.radiance[1] = 1.0F;
         shared.Add(x, y, ray);
@@ -296,9 +296,9 @@ TEST(SharedSampleFilter, SharesThePositionOfSkyButNotItsLight) {
       for (int i = 0; i < rays_of(y); ++i) {
         shared.Add(
             x, y,
-            {filter.Offset(uniform(random)), filter.Offset(uniform(random)), BandLight(1), true});
+            {filter.Offset(uniform(random)), filter.Offset(uniform(random)), Spectrum(1), true});
       }
-      BandLight sky(1);
+      Spectrum sky(1);
       sky[0] = sky_of(y);
       if (x != 3 || y != 5) shared.SetSky(x, y, sky);
     }

@@ -533,9 +533,9 @@ TEST(PictureLayers, FactorsOfRedLightAreNotNegative) {
   const Medium earth = MediumPreset("earth");
   const BandColour colour(earth.wavelengths_nm);
   Shaded ray;
-  ray.radiance = ray.transmittance = ray.albedo = BandLight(colour.wavelengths_nm().size());
-  ray.transmittance[ray.transmittance.count - 1] = 0.9F;  // as if through a red filter
-  ray.albedo[1] = 0.9F;                                   // or a green one
+  ray.radiance = ray.transmittance = ray.albedo = Spectrum(colour.wavelengths_nm().size());
+  ray.transmittance[ray.transmittance.size() - 1] = 0.9F;  // as if through a red filter
+  ray.albedo[1] = 0.9F;                                    // or a green one
   PixelSum pixel;
   pixel.Add(ray, true);
   for (const PictureLayer layer : {PictureLayer::kTransmittance, PictureLayer::kAlbedo}) {
@@ -560,7 +560,7 @@ std::vector<double> DeepTwilight(const Medium& medium) {
   const AirAlongRay seen = AerialPerspective(air, multiple_scattering)
                                .Along({100e3, std::sin(down), std::sin(sun), nu}, {.sky = 12});
   std::vector<double> radiance;
-  for (std::size_t band = 0; band < seen.inscatter.count; ++band) {
+  for (std::size_t band = 0; band < seen.inscatter.size(); ++band) {
     radiance.push_back(static_cast<double>(seen.inscatter[band]) * medium.solar_irradiance[band]);
   }
   return radiance;

@@ -363,7 +363,7 @@ TEST_F(Terminator, LampLightEndsWhereTheRoundBodyTurnsAway) {
       const double cosine = glm::dot(hit->normal, glm::normalize(way));
       if (!(cosine > kEdge && cosine < 0.1)) continue;
       ++near_the_edge;
-      const Bands<float> seen =
+      const Spectrum seen =
           site.light.OnSurface({0}, {point, hit->smooth_point, hit->normal, hit->geometric_normal});
       const double facing = static_cast<double>(site.light.At(0).intensity[0]) / glm::dot(way, way);
       EXPECT_NEAR(static_cast<double>(seen[0]) / facing, cosine, 0.003)

@@ -108,7 +108,7 @@ double Reddest(double slope_deg) {
   const MountainSurface surface(std::vector<double>{555.0, 645.0}, {2100.0, 2900.0});
   double reddest = 0.0;
   for (int i = 0; i < 2000; ++i) {
-    const Bands<float> albedo =
+    const Spectrum albedo =
         surface.Albedo(SpreadPlace(i, 8e3, 1000.0, 0.5), std::cos(slope_deg * kRadiansPerDegree));
     reddest = std::max(reddest, static_cast<double>(albedo[1] / albedo[0]));
   }
@@ -117,7 +117,7 @@ double Reddest(double slope_deg) {
 
 TEST(MountainSurface, SlopesOfUpTo45DegreesHaveNoRock) {
   const MountainSurface surface(std::vector<double>{555.0, 645.0}, {2100.0, 2900.0});
-  const Bands<float>& meadow = surface.materials().meadow;
+  const Spectrum& meadow = surface.materials().meadow;
   for (const double slope_deg : {20.0, 40.0, 45.0})
     EXPECT_LT(Reddest(slope_deg), static_cast<double>(meadow[1] / meadow[0]))
         << slope_deg << ": a meadow is the reddest of what is green";
@@ -125,7 +125,7 @@ TEST(MountainSurface, SlopesOfUpTo45DegreesHaveNoRock) {
 
 TEST(MountainSurface, RockGrowsWithTheSlopeAndIsGrey) {
   const MountainSurface surface(std::vector<double>{470.0, 555.0, 645.0}, {});
-  const Bands<float>& rock = surface.materials().rock;
+  const Spectrum& rock = surface.materials().rock;
   EXPECT_NEAR(rock[2] / rock[0], 1.0F, 0.1F) << "brown soil has 2";
   EXPECT_GT(Reddest(50.0), Reddest(45.0) + 0.05);
   EXPECT_GT(Reddest(58.0), Reddest(50.0) + 0.02);
@@ -148,7 +148,7 @@ TEST(MountainSurface, FlatLandHasMeadowsAndGroves) {
 // vegetation 0.04, 0.08, 0.04 and soil 0.08, 0.12, 0.17, rounded. Land is a mixture of both.
 TEST(MountainSurface, SummerLowlandIsBetweenVegetationAndSoil) {
   const MountainSurface surface(std::vector<double>{470.0, 555.0, 645.0}, {});
-  const Bands<float> seen = surface.Albedo({0.0, 0.0, 300.0, 1e4}, 1.0);
+  const Spectrum seen = surface.Albedo({0.0, 0.0, 300.0, 1e4}, 1.0);
   EXPECT_NEAR(seen[0], 0.045F, 0.015F);
   EXPECT_NEAR(seen[1], 0.09F, 0.02F);
   EXPECT_NEAR(seen[2], 0.07F, 0.03F);
@@ -157,7 +157,7 @@ TEST(MountainSurface, SummerLowlandIsBetweenVegetationAndSoil) {
 
 TEST(MountainSurface, DryGrassAndBareTreesAreLightestInTheRed) {
   const MountainSurface surface(std::vector<double>{470.0, 555.0, 645.0}, {});
-  for (const Bands<float>& dry : {surface.materials().dry_meadow, surface.materials().bare_trees}) {
+  for (const Spectrum& dry : {surface.materials().dry_meadow, surface.materials().bare_trees}) {
     EXPECT_GT(dry[1], dry[0]);
     EXPECT_GE(dry[2], dry[1]);
   }

@@ -229,7 +229,7 @@ TEST_F(AirTexturesOnGpu, TransmittanceToTheSunEqualsThatOfTheIntegrator) {
   const auto points = PlacesUnderTheSun(both.tables.map.radius);
   const auto on_gpu = both.OnGpu("TransmittanceToSun(a[0], a[1]).y", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Bands<float> exact = tests::Earth().single_scattering().TransmittanceToSpace(
+    const Spectrum exact = tests::Earth().single_scattering().TransmittanceToSpace(
         1000.0 * static_cast<double>(points[i][0]), static_cast<double>(points[i][1]));
     EXPECT_NEAR(on_gpu[i], exact[1], 2e-3) << points[i][0] << " km, " << points[i][1];
   }
@@ -241,7 +241,7 @@ TEST_F(AirTexturesOnGpu, BeamOfTheSunEqualsThatOfRefractedBeam) {
   const auto on_gpu = both.OnGpu("BeamOfSun(a[0], a[1]).y", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& earth = tests::Earth();
-    const Bands<float> exact =
+    const Spectrum exact =
         earth.beam().Left(earth.single_scattering(), 1000.0 * static_cast<double>(points[i][0]),
                           static_cast<double>(points[i][1]));
     EXPECT_NEAR(on_gpu[i], exact[1], 2e-3) << points[i][0] << " km, " << points[i][1];

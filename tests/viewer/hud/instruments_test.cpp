@@ -384,9 +384,9 @@ TEST(DayStrip, ColoursEqualThoseOfTheSky) {
     constexpr std::array<double, 6> kElevations_deg{80.0, 50.0, 28.0, 14.0, 6.0, 1.5};
     for (int row = 0; row < strip.rows; ++row) {
       const double elevation = kElevations_deg[static_cast<std::size_t>(row)] * kRadiansPerDegree;
-      const Bands<float> seen = view.Radiance(0.5 * kPi - elevation + dip, 0.0);
+      const Spectrum seen = view.Radiance(0.5 * kPi - elevation + dip, 0.0);
       std::vector<double> radiance;
-      for (std::size_t band = 0; band < seen.count; ++band) {
+      for (std::size_t band = 0; band < seen.size(); ++band) {
         radiance.push_back(static_cast<double>(seen[band]) * medium.solar_irradiance[band] /
                            (sun.distance_au * sun.distance_au));
       }

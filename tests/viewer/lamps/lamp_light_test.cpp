@@ -583,9 +583,9 @@ TEST_F(LampPicture, LampsAndGlowEqualTheRenderersInEveryPixel) {
       end.length_m = 1e3 * shared::DistanceDownTo(h, direction.z, 0.0, radius);
     }
     const CameraRay ray{{0.0, 0.0, 6.0}, {0.0, 0.0, 6.0}, direction, direction};
-    const Bands<float> sum = light.InAir(light.All(), end, kLampPixel_rad, 32) +
-                             light.Seen(light.All(), ray, kLampPixel_rad);
-    const std::vector<double> values(sum.value.begin(), sum.value.begin() + 4);
+    const Spectrum sum = light.InAir(light.All(), end, kLampPixel_rad, 32) +
+                         light.Seen(light.All(), ray, kLampPixel_rad);
+    const std::vector<double> values(sum.values().begin(), sum.values().begin() + 4);
     return colour.LinearSrgb(values)[1];
   };
   const std::vector<double> deviations = Deviations(night.Paint({.nodes = 12, .step = 1}), truth);

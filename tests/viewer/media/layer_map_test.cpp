@@ -57,7 +57,8 @@ const Stage& TheStage() {
 
 std::shared_ptr<const ExponentialLayer> DropletsOf(double per_m, double height_m, double base_m) {
   const Medium& medium = TheStage().scene.medium;
-  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), DropletPhase(14.0)};
+  MediumOptics optics{SpectrumOf<double>(3), SpectrumOf<double>(3), SpectrumOf<double>(3),
+                      DropletPhase(14.0)};
   for (std::size_t band = 0; band < 3; ++band) {
     optics.extinction_per_m[band] = optics.scattering_per_m[band] = per_m;
   }
@@ -254,13 +255,13 @@ TEST_F(LayerOnGpu, StretchesDimLightWithinEightPercent) {
       const double length = 1000.0 * std::min(double{rays[i][3]}, 20.0);
       const MarchedLight march = both.renderer.Along(both.eye, way, length, nullptr, 1e-4);
       const auto upto = [&](double m) {
-        BandLight light(3);
+        Spectrum light(3);
         for (std::size_t band = 0; band < 3; ++band) {
           light[band] = static_cast<float>(std::min(m, length) / 1000.0);
         }
         return light;
       };
-      const BandLight truth = DimmedByMedia(march.pieces, upto, upto(length), Behind::kAll);
+      const Spectrum truth = DimmedByMedia(march.pieces, upto, upto(length), Behind::kAll);
       EXPECT_NEAR(double{gpu[i]}, double{truth[0]}, 0.08 * double{truth[0]})
           << "four stretches; " << way.z << " " << length;
     }

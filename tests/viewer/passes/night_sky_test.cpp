@@ -34,7 +34,7 @@ PaintedView ViewOf(const Scene& scene, int width, int height) {
 Scene SkyScene() { return BareScene(2000.0, 150.0, 20.0, 60.0); }
 
 StarLight StarAt(double elevation_deg, double azimuth_deg, double lux) {
-  BandLight light(4);
+  Spectrum light(4);
   for (std::size_t band = 0; band < 4; ++band)
     light[band] = static_cast<float>(lux * static_cast<double>(1 + band));
   return {EnuFromAngles(elevation_deg * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree).xyz,
@@ -62,7 +62,7 @@ TEST(StarPoints, HaveTheRenderersPixelsAndRadianceAtEverySize) {
     const StarPixels reference(
         CameraRays(scene.camera, width, height), width, height, lights,
         [](double, double) {
-          BandLight all(4);
+          Spectrum all(4);
           for (std::size_t band = 0; band < 4; ++band) all[band] = 1.0F;
           return all;
         },
@@ -79,7 +79,7 @@ TEST(StarPoints, HaveTheRenderersPixelsAndRadianceAtEverySize) {
     double brightest = 0.0;
     for (const auto& [place, light] : painted) brightest = std::max(brightest, light);
     for (const auto& [place, light] : painted) {
-      const BandLight* there = reference.At(place.first, place.second);
+      const Spectrum* there = reference.At(place.first, place.second);
       ASSERT_NE(there, nullptr) << place.first << ' ' << place.second;
       EXPECT_NEAR(light, static_cast<double>((*there)[0]), 1e-4 * brightest)
           << "solid angle of a pixel by its middle or by its sides: its width squared, 5e-5";
@@ -194,7 +194,7 @@ TEST(NightSkyMap, SkyglowOfTownsEqualsTheRenderers) {
   const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad()));
   const NightSkyMap dark = NightSkyMapOver(eye, now, medium, colour);
   const NightSkyMap city = NightSkyMapOver(eye, now, medium, colour, {18.0, 400.0});
-  const BandLight towns = Skyglow(18.0, 400.0, air, colour);
+  const Spectrum towns = Skyglow(18.0, 400.0, air, colour);
   for (int band = 0; band < 4; ++band) {
     const auto at = static_cast<std::size_t>(band);
     EXPECT_FLOAT_EQ(city.scattered[band], dark.scattered[band] + towns[at]);
@@ -282,7 +282,7 @@ TEST(LightsOfSky, ShadowsOfTheSecondLightAreInvisibleEveryEvening) {
 
 DistantLight LightAt(double elevation_rad) {
   return {LightSource::kSun, Unrefracted(EnuFromAngles(elevation_rad, 0.0).xyz),
-          0.27 * kRadiansPerDegree, BandLight(4)};
+          0.27 * kRadiansPerDegree, Spectrum(4)};
 }
 
 // Ground is lit if the upper limb is above its horizon, which the height lowers.

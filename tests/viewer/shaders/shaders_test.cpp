@@ -546,8 +546,7 @@ TEST_F(GroundCoverBlock, AlbedoEqualsTheRenderersInEverySeason) {
         "a[4], vec4(0.0)).y");
     const auto points = GroundPoints();
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Bands<float> albedo =
-          surface.Albedo(PointOf(points[i]), static_cast<double>(points[i][3]));
+      const Spectrum albedo = surface.Albedo(PointOf(points[i]), static_cast<double>(points[i][3]));
       EXPECT_NEAR(on_gpu[i], albedo[1], 2e-3)
           << "float places the pattern to 1e-4 of its shortest wave, and its edges are steep";
     }
