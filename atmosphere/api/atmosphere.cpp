@@ -103,6 +103,11 @@ void RefuseBand(std::size_t band, std::size_t bands) {
   throw InputError(fmt::format("band is {}; the spectrum has {} bands", band, bands));
 }
 
+void RefuseOperands(std::size_t bands, std::size_t others) {
+  throw InputError(fmt::format(
+      "two spectra have {} and {} bands; they must have as many as each other", bands, others));
+}
+
 double Luminance(const LinearRgb& colour) {
   RequireFinite(colour.red, "red");
   RequireFinite(colour.green, "green");

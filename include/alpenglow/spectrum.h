@@ -16,6 +16,8 @@ namespace ALPENGLOW_EXPORT alpenglow {
 [[noreturn]] void RefuseBands(std::size_t bands);
 /// Throws the InputError of a band that a spectrum does not have.
 [[noreturn]] void RefuseBand(std::size_t band, std::size_t bands);
+/// Throws the InputError of an operation on two spectra with different numbers of bands.
+[[noreturn]] void RefuseOperands(std::size_t bands, std::size_t others);
 
 /// One value for each wavelength of an atmosphere. It is a plain value without memory on the heap, and
 /// the type of the library's own light, transmittances and reflectances.
@@ -53,13 +55,15 @@ class SpectrumOf {
   friend bool operator==(const SpectrumOf& a, const SpectrumOf& b) {
     return std::equal(a.values().begin(), a.values().end(), b.values().begin(), b.values().end());
   }
-  /// Returns the sums, band by band, of spectra with the same number of bands.
+  /// Returns the sums, band by band. Throws InputError for different numbers of bands.
   friend SpectrumOf operator+(SpectrumOf a, const SpectrumOf& b) {
+    if (a.size_ != b.size_) RefuseOperands(a.size_, b.size_);
     for (std::size_t band = 0; band < a.size_; ++band) a.values_[band] += b.values_[band];
     return a;
   }
-  /// Returns the products, band by band, of spectra with the same number of bands.
+  /// Returns the products, band by band. Throws InputError for different numbers of bands.
   friend SpectrumOf operator*(SpectrumOf a, const SpectrumOf& b) {
+    if (a.size_ != b.size_) RefuseOperands(a.size_, b.size_);
     for (std::size_t band = 0; band < a.size_; ++band) a.values_[band] *= b.values_[band];
     return a;
   }

@@ -3,8 +3,8 @@
 // bands, phase functions, and the twilight factor by which texels are divided.
 #pragma once
 
-#include <array>
 #include <glm/vec4.hpp>
+#include <span>
 #include <vector>
 
 #include "atmosphere/math/constants.h"

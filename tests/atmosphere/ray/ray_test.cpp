@@ -87,6 +87,27 @@ TEST(Ray, ShortRaysEndAtGroundOrTopOnlyIfTheyReachThem) {
   }
 }
 
+TEST(Spectrum, OperatorsWorkBandByBand) {
+  Spectrum a(3, 2.0F), b(3);
+  for (std::size_t band = 0; band < b.size(); ++band) b[band] = static_cast<float>(band);
+  for (std::size_t band = 0; band < b.size(); ++band) {
+    const auto of_b = static_cast<float>(band);
+    EXPECT_EQ((a + b)[band], 2.0F + of_b);
+    EXPECT_EQ((a * b)[band], 2.0F * of_b);
+    EXPECT_EQ((0.5F * b)[band], 0.5F * of_b);
+  }
+  EXPECT_NE(a, b);
+  EXPECT_NE(a, Spectrum(2, 2.0F));
+  EXPECT_EQ(a, Spectrum(3, 2.0F));
+}
+
+TEST(Spectrum, BandsAndOperandsThatDoNotExistAreRefused) {
+  const Spectrum three(3), four(4);
+  EXPECT_THROW(static_cast<void>(three[3]), InputError);
+  EXPECT_THROW(static_cast<void>(three + four), InputError);
+  EXPECT_THROW(static_cast<void>(four * three), InputError);
+}
+
 TEST(Spectrum, TooManyAreRefused) {
   EXPECT_EQ(Spectrum(kMaxBands).size(), kMaxBands);
   EXPECT_THROW(Spectrum(kMaxBands + 1), InputError);
