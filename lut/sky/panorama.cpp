@@ -212,7 +212,7 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const SunInSky& su
 /// Returns the fraction of the disk's light in each part, in each band.
 std::vector<Spectrum> SharesOf(const std::vector<DiskPiece>& pieces,
                                const std::vector<double>& wavelengths_nm) {
-  std::vector<Spectrum> shares(pieces.size());
+  std::vector<Spectrum> shares(pieces.size(), Spectrum(wavelengths_nm.size()));
   for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
     const auto light = [&](const DiskPiece& piece) {
       return piece.weight * LimbDarkening(piece.rho, wavelengths_nm[band]);
