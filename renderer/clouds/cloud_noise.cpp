@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/clouds/cloud_noise.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "atmosphere/base/error.h"
+#include "renderer/layer.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+std::int32_t FloorOf(double value) {
+  const auto truncated = static_cast<std::int32_t>(value);
+  return truncated - (value < truncated ? 1 : 0);
+}
+
+/// Returns a number in [0, period).
+std::int32_t Wrapped(std::int32_t number, int period) {
+  const std::int32_t rest = number % period;
+  return rest < 0 ? rest + period : rest;
+}
+
+double UnitOf(std::uint32_t hash) { return static_cast<double>(hash) / 4294967296.0; }
+
+/// Returns the hash of a lattice point; all axes repeat, or only x and y.
+std::uint32_t PointHash(const std::array<std::int32_t, 3>& point, int period, bool wraps_z,
+                        std::uint32_t seed) {
+  return LatticeHash3(Wrapped(point[0], period), Wrapped(point[1], period),
+                      wraps_z ? Wrapped(point[2], period) : point[2], seed);
+}
+
+double BlendedValues(const glm::dvec3& cells, int period, bool wraps_z, std::uint32_t seed) {
+  const std::array<std::int32_t, 3> low{FloorOf(cells.x), FloorOf(cells.y), FloorOf(cells.z)};
+  std::array<double, 3> fade{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    fade[a] = shared::NoiseFade(cells[axis] - low[a]);
+  }
+  const auto value = [&](int x, int y, int z) {
+    return UnitOf(PointHash({low[0] + x, low[1] + y, low[2] + z}, period, wraps_z, seed));
+  };
+  const auto plane = [&](int z) {
+    return shared::NoiseBlend(fade[0], fade[1], value(0, 0, z), value(1, 0, z), value(0, 1, z),
+                              value(1, 1, z));
+  };
+  const double below = plane(0);
+  return 2.0 * (below + fade[2] * (plane(1) - below)) - 1.0;
+}
+
+/// Returns 1 at a hashed point of the lattice, and 0 at distances of a cell and more.
+double Bump(const glm::dvec3& cells, int period, std::uint32_t seed) {
+  const std::array<std::int32_t, 3> middle{FloorOf(cells.x), FloorOf(cells.y), FloorOf(cells.z)};
+  double least = 1.0;
+  for (int z = -1; z <= 1; ++z) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int x = -1; x <= 1; ++x) {
+        const std::array<std::int32_t, 3> cell{middle[0] + x, middle[1] + y, middle[2] + z};
+        const std::uint32_t hash = PointHash(cell, period, true, seed);
+        const double dx = cell[0] + UnitOf(hash) - cells.x;
+        const double dy = cell[1] + UnitOf(shared::MixedBits(hash + 1U)) - cells.y;
+        const double dz = cell[2] + UnitOf(shared::MixedBits(hash + 2U)) - cells.z;
+        least = std::min(least, dx * dx + dy * dy + dz * dz);
+      }
+    }
+  }
+  return 1.0 - least;
+}
+
+/// Returns the texels of a sum of octaves, scaled to mean 0 and standard deviation 1.
+/// @param octave  value at a point in cells, for a period in cells and a seed.
+template <typename Octave>
+std::vector<float> OctaveTexels(int side, const NoiseOctaves& octaves, const Octave& octave) {
+  const auto n = static_cast<std::size_t>(side);
+  std::vector<double> sum(n * n * n, 0.0);
+  tbb::parallel_for(0, side, [&](int z) {
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        double amplitude = 1.0;
+        int cells = octaves.cells;
+        double& texel = sum[(static_cast<std::size_t>(z) * n + static_cast<std::size_t>(y)) * n +
+                            static_cast<std::size_t>(x)];
+        for (int i = 0; i < octaves.octaves; ++i, cells *= 2, amplitude *= octaves.gain) {
+          const glm::dvec3 at = (glm::dvec3(x, y, z) + 0.5) * (static_cast<double>(cells) / side);
+          texel += amplitude * octave(at, cells, octaves.seed + static_cast<std::uint32_t>(i));
+        }
+      }
+    }
+  });
+  double mean = 0.0, square = 0.0;
+  for (const double value : sum) mean += value;
+  mean /= static_cast<double>(sum.size());
+  for (const double value : sum) square += (value - mean) * (value - mean);
+  const double scale = 1.0 / std::sqrt(square / static_cast<double>(sum.size()));
+  std::vector<float> texels;
+  texels.reserve(sum.size());
+  for (const double value : sum) texels.push_back(static_cast<float>((value - mean) * scale));
+  return texels;
+}
+
+void CheckNoise(int side, const NoiseOctaves& octaves) {
+  const bool is_power = side >= 8 && side <= 256 && (side & (side - 1)) == 0;
+  ALPENGLOW_ENSURE(is_power, ==, true);
+  ALPENGLOW_ENSURE(octaves.octaves, >=, 1);
+  ALPENGLOW_ENSURE(octaves.cells, >=, 1);
+}
+
+}  // namespace
+
+double ValueNoise(const glm::dvec3& cells, int period, std::uint32_t seed) {
+  return BlendedValues(cells, period, false, seed);
+}
+
+TilingNoise TilingNoise::Billow(int side, const NoiseOctaves& octaves) {
+  CheckNoise(side, octaves);
+  return {side, OctaveTexels(side, octaves, Bump)};
+}
+
+TilingNoise TilingNoise::Value(int side, const NoiseOctaves& octaves) {
+  CheckNoise(side, octaves);
+  return {side,
+          OctaveTexels(side, octaves, [](const glm::dvec3& cells, int period, std::uint32_t seed) {
+            return BlendedValues(cells, period, true, seed);
+          })};
+}
+
+TilingNoise::TilingNoise(int side, std::vector<float> texels)
+    : side_(side),
+      texels_(std::move(texels)),
+      largest_(*std::max_element(texels_.begin(), texels_.end())) {}
+
+double TilingNoise::At(const glm::dvec3& periods) const {
+  const glm::dvec3 texels = static_cast<double>(side_) * periods;
+  std::array<std::size_t, 3> low{}, high{};
+  std::array<float, 3> share{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const std::int32_t floor = FloorOf(texels[axis]);
+    share[a] = static_cast<float>(texels[axis] - floor);
+    low[a] = static_cast<std::size_t>(floor & (side_ - 1));
+    high[a] = static_cast<std::size_t>((floor + 1) & (side_ - 1));
+  }
+  const auto n = static_cast<std::size_t>(side_);
+  const auto along_x = [&](std::size_t y, std::size_t z) {
+    const float* row = texels_.data() + (z * n + y) * n;
+    return row[low[0]] + share[0] * (row[high[0]] - row[low[0]]);
+  };
+  const auto along_xy = [&](std::size_t z) {
+    const float south = along_x(low[1], z);
+    return south + share[1] * (along_x(high[1], z) - south);
+  };
+  const float below = along_xy(low[2]);
+  return static_cast<double>(below + share[2] * (along_xy(high[2]) - below));
+}
+
+}  // namespace alpenglow::renderer

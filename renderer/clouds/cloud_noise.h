@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Noise that repeats seamlessly, for the shapes of clouds. It uses integer hashes and only +, -, *,
+// / and square roots, so that it is bit-identical on every machine with IEEE arithmetic.
+//
+// Value noise blends hashed values of lattice points (Perlin's fade). Billow noise is the sum of
+// bumps 1 - d^2, d the distance to the nearest hashed point (Worley 1996, SIGGRAPH): round tops that
+// meet in creases, as the tops of cumulus do.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "renderer/procedural_mountains/lattice_noise.h"
+
+namespace alpenglow::renderer {
+
+/// Returns a well-mixed value of a lattice point in space.
+[[nodiscard]] inline std::uint32_t LatticeHash3(std::int32_t x, std::int32_t y, std::int32_t z,
+                                                std::uint32_t seed) {
+  return shared::MixedBits(static_cast<std::uint32_t>(x) + LatticeHash(y, z, seed));
+}
+
+/// Returns value noise in [-1, 1] that repeats after `period` cells along x and y, and never along
+/// z. Its standard deviation is about 0.34.
+[[nodiscard]] double ValueNoise(const glm::dvec3& cells, int period, std::uint32_t seed);
+
+/// Octaves of noise.
+struct NoiseOctaves {
+  int cells = 4;       // of the first octave, per period; each octave doubles them
+  int octaves = 4;     // >= 1
+  double gain = 0.55;  // of amplitude per octave
+  std::uint32_t seed = 1;
+};
+
+/// A cube of noise that repeats along all axes, of mean 0 and standard deviation 1, with trilinear
+/// interpolation. Immutable; safe to use from many threads.
+class TilingNoise {
+ public:
+  /// @param side  texels per period: a power of two in [8, 256].
+  [[nodiscard]] static TilingNoise Billow(int side, const NoiseOctaves& octaves);
+  [[nodiscard]] static TilingNoise Value(int side, const NoiseOctaves& octaves);
+
+  /// Returns the noise. @param periods  coordinates in periods, within 1e6.
+  [[nodiscard]] double At(const glm::dvec3& periods) const;
+  [[nodiscard]] int side() const { return side_; }
+  /// Returns an upper bound of the noise.
+  [[nodiscard]] double Largest() const { return static_cast<double>(largest_); }
+
+ private:
+  TilingNoise(int side, std::vector<float> texels);
+
+  int side_;
+  std::vector<float> texels_;
+  float largest_ = 0.0F;
+};
+
+}  // namespace alpenglow::renderer
