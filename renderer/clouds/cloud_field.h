@@ -83,8 +83,8 @@ struct CloudEdge {
 /// Structure below the size of a voxel: noise added to the depth, for views from near by. Its
 /// period must divide that of the field.
 struct CloudDetail {
-  std::shared_ptr<const TilingNoise> noise;  // mean 0; empty: no detail
-  double amplitude_m = 0.0;                  // of the noise's standard deviation
+  const TilingNoise* noise = nullptr;  // mean 0, outlives the field; null: no detail
+  double amplitude_m = 0.0;            // of the noise's standard deviation
   double period_m = 160.0;
 };
 

@@ -27,6 +27,9 @@ std::int32_t Wrapped(std::int32_t number, int period) {
 
 double UnitOf(std::uint32_t hash) { return static_cast<double>(hash) / 4294967296.0; }
 
+/// Returns the lowest ten bits as a number in [0, 1).
+double TenBits(std::uint32_t hash) { return (hash & 1023U) / 1024.0; }
+
 /// Returns the hash of a lattice point; all axes repeat, or only x and y.
 std::uint32_t PointHash(const std::array<std::int32_t, 3>& point, int period, bool wraps_z,
                         std::uint32_t seed) {
@@ -60,10 +63,11 @@ double Bump(const glm::dvec3& cells, int period, std::uint32_t seed) {
     for (int y = -1; y <= 1; ++y) {
       for (int x = -1; x <= 1; ++x) {
         const std::array<std::int32_t, 3> cell{middle[0] + x, middle[1] + y, middle[2] + z};
+        // Three parts of one hash, in steps of 2^-10, place the point.
         const std::uint32_t hash = PointHash(cell, period, true, seed);
-        const double dx = cell[0] + UnitOf(hash) - cells.x;
-        const double dy = cell[1] + UnitOf(shared::MixedBits(hash + 1U)) - cells.y;
-        const double dz = cell[2] + UnitOf(shared::MixedBits(hash + 2U)) - cells.z;
+        const double dx = cell[0] + TenBits(hash) - cells.x;
+        const double dy = cell[1] + TenBits(hash >> 10U) - cells.y;
+        const double dz = cell[2] + TenBits(hash >> 20U) - cells.z;
         least = std::min(least, dx * dx + dy * dy + dz * dz);
       }
     }
@@ -113,6 +117,31 @@ void CheckNoise(int side, const NoiseOctaves& octaves) {
 
 double ValueNoise(const glm::dvec3& cells, int period, std::uint32_t seed) {
   return BlendedValues(cells, period, false, seed);
+}
+
+CellDistances DistancesInCells(const glm::dvec2& cells, double time, int period,
+                               std::uint32_t seed) {
+  constexpr double kJitter = 0.8;  // of a cell
+  const std::int32_t before = FloorOf(time);
+  const double share = shared::NoiseFade(time - before);
+  const auto place = [&](std::int32_t x, std::int32_t y, std::uint32_t axis) {
+    const std::int32_t east = Wrapped(x, period), north = Wrapped(y, period);
+    const double from = UnitOf(LatticeHash3(east, north, before, seed + axis));
+    const double to = UnitOf(LatticeHash3(east, north, before + 1, seed + axis));
+    return 0.5 + kJitter * (from + share * (to - from) - 0.5);
+  };
+  const std::int32_t column = FloorOf(cells.x), row = FloorOf(cells.y);
+  double nearest = 9.0, second = 9.0;  // squares
+  for (std::int32_t y = row - 1; y <= row + 1; ++y) {
+    for (std::int32_t x = column - 1; x <= column + 1; ++x) {
+      const double dx = x + place(x, y, 0U) - cells.x;
+      const double dy = y + place(x, y, 0x5bd1e995U) - cells.y;
+      const double square = dx * dx + dy * dy;
+      second = std::min(second, std::max(nearest, square));
+      nearest = std::min(nearest, square);
+    }
+  }
+  return {std::sqrt(nearest), std::sqrt(second)};
 }
 
 TilingNoise TilingNoise::Billow(int side, const NoiseOctaves& octaves) {

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -25,6 +26,16 @@ namespace alpenglow::renderer {
 /// Returns value noise in [-1, 1] that repeats after `period` cells along x and y, and never along
 /// z. Its standard deviation is about 0.34.
 [[nodiscard]] double ValueNoise(const glm::dvec3& cells, int period, std::uint32_t seed);
+
+/// Distances from a point to the nearest and the second nearest of points scattered one per cell,
+/// in cells. Their difference is 0 on the borders of the cells that the points own (Worley 1996).
+struct CellDistances {
+  double nearest, second;
+};
+/// Returns the distances on a plane of cells that repeats after `period` of them along x and y.
+/// @param time  at each whole time the points are in other places of their cells.
+[[nodiscard]] CellDistances DistancesInCells(const glm::dvec2& cells, double time, int period,
+                                             std::uint32_t seed);
 
 /// Octaves of noise.
 struct NoiseOctaves {

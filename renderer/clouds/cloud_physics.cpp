@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "renderer/clouds/portable_functions.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -26,8 +27,15 @@ double LatentHeat(double temperature_K) { return 2.501e6 - 2370.0 * (temperature
 /// Returns the mixing ratio of saturated air.
 double SaturationRatio(const BaseAir& air) {
   const double celsius = air.temperature_K - 273.15;
-  const double vapor_Pa = 611.2 * std::exp(17.67 * celsius / (celsius + 243.5));
+  const double vapor_Pa =
+      611.2 * PortableExp2(17.67 * celsius / (celsius + 243.5) / std::numbers::ln2);
   return kVaporRatio * vapor_Pa / (air.pressure_Pa - vapor_Pa);
+}
+
+/// Returns the cube root of x > 0, to the last bits: a Newton step after a power.
+double CubeRoot(double x) {
+  const double root = PortablePower(x, 1.0 / 3.0);
+  return root - (root - x / (root * root)) / 3.0;
 }
 
 double SphereExtinction(double content_kg_per_m3, double density_kg_per_m3, double radius_um) {
@@ -41,7 +49,8 @@ BaseAir StandardBaseAir(double altitude_m) {
   RequireInRange(altitude_m, -500.0, 11000.0, "altitude_m");
   constexpr double kLapse = 6.5e-3;  // K/m
   const double temperature = 288.15 - kLapse * altitude_m;
-  return {temperature, 101325.0 * std::pow(temperature / 288.15, kGravity / (kDryGas * kLapse))};
+  return {temperature,
+          101325.0 * PortablePower(temperature / 288.15, kGravity / (kDryGas * kLapse))};
 }
 
 double CondensationRate_kg_per_m4(const BaseAir& air) {
@@ -60,7 +69,7 @@ double CondensationRate_kg_per_m4(const BaseAir& air) {
 double DropletRadius_um(double water_kg_per_m3, double number_per_m3, double k) {
   if (water_kg_per_m3 <= 0.0) return 0.0;
   return 1e6 *
-         std::cbrt(0.75 * water_kg_per_m3 / (std::numbers::pi * kWaterDensity * k * number_per_m3));
+         CubeRoot(0.75 * water_kg_per_m3 / (std::numbers::pi * kWaterDensity * k * number_per_m3));
 }
 
 double WaterExtinction_per_m(double water_kg_per_m3, double radius_um) {
@@ -90,11 +99,11 @@ CloudColumn::CloudColumn(double bottom_m, double step_m, std::vector<CloudLevel>
 
 double CloudColumn::LargestBetween_per_m(double low_m, double high_m) const {
   double largest = std::max(Extinction_per_m(low_m), Extinction_per_m(high_m));
-  for (std::size_t i = 0; i < levels_.size(); ++i) {
-    const double altitude = bottom_m_ + static_cast<double>(i) / per_step_;
-    if (altitude > low_m && altitude < high_m) {
-      largest = std::max(largest, levels_[i].extinction_per_m);
-    }
+  const auto last = static_cast<double>(levels_.size() - 1);
+  const double from = std::clamp(std::ceil((low_m - bottom_m_) * per_step_), 0.0, last);
+  const double to = std::clamp(std::floor((high_m - bottom_m_) * per_step_), 0.0, last);
+  for (double i = from; i <= to; i += 1.0) {
+    largest = std::max(largest, levels_[static_cast<std::size_t>(i)].extinction_per_m);
   }
   return largest;
 }

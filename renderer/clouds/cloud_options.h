@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// What a user says about a layer of clouds, and the values that each genus has without it.
+//
+// Bases and depths are those usual for the genus (World Meteorological Organization, International
+// Cloud Atlas, 2017; https://cloudatlas.wmo.int). Droplet numbers: Miles, Verlinde and Clothiaux
+// (2000), J. Atmos. Sci. 57, 295 (about 300 per cm3 in continental and 75 in marine low clouds).
+// Content and size of the crystals of cirrus: Heymsfield and Platt (1984), J. Atmos. Sci. 41, 846;
+// the extinction is about 1 per km.
+//
+// Cover is the fraction of the sky, seen vertically, with an optical depth above 0.3; for cirrus
+// above 0.03, where cirrus begins to be visible (Sassen and Cho 1992, J. Appl. Meteor. 31, 1275).
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <string_view>
+
+#include "atmosphere/base/names.h"
+#include "renderer/layer.h"
+
+namespace alpenglow::renderer {
+
+enum class CloudGenus { kCumulus, kStratocumulus, kAltocumulus, kCirrus };
+
+inline constexpr EnumNames kCloudGenusNames{{std::pair{CloudGenus::kCumulus, "cumulus"},
+                                             {CloudGenus::kStratocumulus, "stratocumulus"},
+                                             {CloudGenus::kAltocumulus, "altocumulus"},
+                                             {CloudGenus::kCirrus, "cirrus"}}};
+
+/// Horizontal periods are multiples of this length, which the noise of the shapes divides.
+inline constexpr double kPeriodStep_m = 2560.0;
+
+/// A layer of clouds.
+struct CloudOptions {
+  CloudGenus genus = CloudGenus::kCumulus;
+  double cover = 0.3;                     // in [0, 1]
+  double base_altitude_m = 1200.0;        // in [0, 11000]; of cirrus in [0, 15000]
+  double depth_m = 1500.0;                // from the base to the highest tops, in [100, 4000]
+  double droplet_number_per_cm3 = 250.0;  // in [1, 5000]; cirrus has none
+  double ice_mg_per_m3 = 0.0;             // in [1, 1000] for cirrus; others have none
+  double crystal_radius_um = 35.0;        // effective, in [5, 200]; of cirrus
+  std::uint32_t seed = 1;
+  glm::dvec2 wind_m_per_s{0.0};  // east, north; each in [-150, 150]
+  double period_m = 20480.0;     // a multiple of kPeriodStep_m, at most 32 of them
+};
+
+/// Returns the options of a genus that names nothing else.
+[[nodiscard]] CloudOptions DefaultCloudOptions(CloudGenus genus);
+
+/// Returns the genus with a name. Throws InputError that lists the names.
+[[nodiscard]] CloudGenus CloudGenusNamed(std::string_view name);
+
+/// Throws InputError "clouds.KEY is VALUE; ..." for the first value out of range.
+void CheckCloudOptions(const CloudOptions& options);
+
+/// Returns the vertical optical depth above which a column of the genus counts as covered.
+[[nodiscard]] double CoveredOpticalDepth(CloudGenus genus);
+
+}  // namespace alpenglow::renderer
