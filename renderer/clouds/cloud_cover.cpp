@@ -2,11 +2,10 @@
 #include "renderer/clouds/cloud_cover.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <utility>
 
 #include "renderer/layer.h"
 #include "renderer/procedural_mountains/lattice_noise.h"
@@ -33,6 +32,43 @@ bool IsCovered(const CloudLattice& lattice, const CloudMatter& matter, const glm
   }
   return false;
 }
+
+/// Columns of a field whose cover is not decided yet.
+class Columns {
+ public:
+  /// The columns lie anywhere in their cells, so that rows of clouds cannot fall between them.
+  Columns(double period_m, int side) {
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        const glm::dvec2 jitter(LatticeUniform(x, y, 1U), LatticeUniform(x, y, 2U));
+        places_.push_back(period_m / side * (glm::dvec2(x, y) + jitter));
+      }
+    }
+  }
+
+  /// Returns 1 for every column for which a predicate is true.
+  template <typename Predicate>
+  [[nodiscard]] std::vector<char> Evaluated(const Predicate& predicate) const {
+    std::vector<char> values(places_.size());
+    tbb::parallel_for(std::size_t{0}, places_.size(),
+                      [&](std::size_t i) { values[i] = predicate(places_[i]) ? 1 : 0; });
+    return values;
+  }
+
+  /// Drops the columns with a value; returns their number.
+  std::size_t KeepOthers(const std::vector<char>& values, bool dropped) {
+    std::vector<glm::dvec2> kept;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if ((values[i] == 1) != dropped) kept.push_back(places_[i]);
+    }
+    const std::size_t count = places_.size() - kept.size();
+    places_ = std::move(kept);
+    return count;
+  }
+
+ private:
+  std::vector<glm::dvec2> places_;
+};
 
 }  // namespace
 
@@ -66,29 +102,29 @@ double CoverOf(const OpticalDepthMap& map, double least_optical_depth) {
 double ParameterForCover(const CloudLattice& lattice, const CloudMatter& matter,
                          const DepthWithParameter& depth_m, const WantedCover& wanted) {
   const int side = std::max(16, static_cast<int>(lattice.size_m().x / kColumnSpacing_m));
-  const double spacing = lattice.size_m().x / side;
-  const auto cover_at = [&](double parameter) {
+  Columns columns(lattice.size_m().x, side);
+  const auto covered_at = [&](double parameter) {
     const auto depth = [&](const glm::dvec3& point) { return depth_m(point, parameter); };
-    const auto covered_in = [&](const tbb::blocked_range<int>& rows, int covered) {
-      for (int y = rows.begin(); y < rows.end(); ++y) {
-        for (int x = 0; x < side; ++x) {
-          // Columns lie anywhere in their cells, so that rows of clouds cannot fall between them.
-          const glm::dvec2 place =
-              spacing *
-              (glm::dvec2(x, y) + glm::dvec2(LatticeUniform(x, y, 1U), LatticeUniform(x, y, 2U)));
-          covered += IsCovered(lattice, matter, place, wanted.least_optical_depth, depth) ? 1 : 0;
-        }
-      }
-      return covered;
-    };
-    const int covered =
-        tbb::parallel_reduce(tbb::blocked_range<int>(0, side), 0, covered_in, std::plus<>());
-    return static_cast<double>(covered) / (side * side);
+    return columns.Evaluated([&](const glm::dvec2& place) {
+      return IsCovered(lattice, matter, place, wanted.least_optical_depth, depth);
+    });
   };
+  const auto target = static_cast<std::size_t>(wanted.cover * side * side + 0.5);
   double low = wanted.low, high = wanted.high;
+  // Columns that are covered at the low end, or not at the high end, are the same between them.
+  std::size_t covered = columns.KeepOthers(covered_at(low), true);
+  columns.KeepOthers(covered_at(high), false);
   for (int halving = 0; halving < kHalvings; ++halving) {
     const double middle = 0.5 * (low + high);
-    (cover_at(middle) < wanted.cover ? low : high) = middle;
+    const std::vector<char> at_middle = covered_at(middle);
+    const auto more = static_cast<std::size_t>(std::count(at_middle.begin(), at_middle.end(), 1));
+    if (covered + more < target) {
+      covered += columns.KeepOthers(at_middle, true);
+      low = middle;
+    } else {
+      columns.KeepOthers(at_middle, false);
+      high = middle;
+    }
   }
   return 0.5 * (low + high);
 }

@@ -55,46 +55,64 @@ double BlendedValues(const glm::dvec3& cells, int period, bool wraps_z, std::uin
   return 2.0 * (below + fade[2] * (plane(1) - below)) - 1.0;
 }
 
-/// Returns 1 at a hashed point of the lattice, and 0 at distances of a cell and more.
-double Bump(const glm::dvec3& cells, int period, std::uint32_t seed) {
-  const std::array<std::int32_t, 3> middle{FloorOf(cells.x), FloorOf(cells.y), FloorOf(cells.z)};
-  double least = 1.0;
-  for (int z = -1; z <= 1; ++z) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int x = -1; x <= 1; ++x) {
-        const std::array<std::int32_t, 3> cell{middle[0] + x, middle[1] + y, middle[2] + z};
-        // Three parts of one hash, in steps of 2^-10, place the point.
-        const std::uint32_t hash = PointHash(cell, period, true, seed);
-        const double dx = cell[0] + TenBits(hash) - cells.x;
-        const double dy = cell[1] + TenBits(hash >> 10U) - cells.y;
-        const double dz = cell[2] + TenBits(hash >> 20U) - cells.z;
-        least = std::min(least, dx * dx + dy * dy + dz * dz);
-      }
-    }
-  }
-  return 1.0 - least;
-}
-
-/// Returns the texels of a sum of octaves, scaled to mean 0 and standard deviation 1.
-/// @param octave  value at a point in cells, for a period in cells and a seed.
-template <typename Octave>
-std::vector<float> OctaveTexels(int side, const NoiseOctaves& octaves, const Octave& octave) {
-  const auto n = static_cast<std::size_t>(side);
-  std::vector<double> sum(n * n * n, 0.0);
-  tbb::parallel_for(0, side, [&](int z) {
-    for (int y = 0; y < side; ++y) {
-      for (int x = 0; x < side; ++x) {
-        double amplitude = 1.0;
-        int cells = octaves.cells;
-        double& texel = sum[(static_cast<std::size_t>(z) * n + static_cast<std::size_t>(y)) * n +
-                            static_cast<std::size_t>(x)];
-        for (int i = 0; i < octaves.octaves; ++i, cells *= 2, amplitude *= octaves.gain) {
-          const glm::dvec3 at = (glm::dvec3(x, y, z) + 0.5) * (static_cast<double>(cells) / side);
-          texel += amplitude * octave(at, cells, octaves.seed + static_cast<std::uint32_t>(i));
+/// Round bumps around one hashed point per cell of a lattice that repeats along all axes.
+class BumpLattice {
+ public:
+  BumpLattice(int period, std::uint32_t seed) : period_(period) {
+    for (std::int32_t z = 0; z < period; ++z) {
+      for (std::int32_t y = 0; y < period; ++y) {
+        for (std::int32_t x = 0; x < period; ++x) {
+          // Three parts of one hash, in steps of 2^-10, place the point.
+          const std::uint32_t hash = LatticeHash3(x, y, z, seed);
+          points_.push_back({TenBits(hash), TenBits(hash >> 10U), TenBits(hash >> 20U)});
         }
       }
     }
-  });
+  }
+
+  /// Returns 1 at a point of the lattice, and 0 at distances of a cell and more.
+  [[nodiscard]] double At(const glm::dvec3& cells) const {
+    const std::array<std::int32_t, 3> middle{FloorOf(cells.x), FloorOf(cells.y), FloorOf(cells.z)};
+    double least = 1.0;
+    for (std::int32_t z = middle[2] - 1; z <= middle[2] + 1; ++z) {
+      for (std::int32_t y = middle[1] - 1; y <= middle[1] + 1; ++y) {
+        const std::int32_t row = (Wrapped(z, period_) * period_ + Wrapped(y, period_)) * period_;
+        for (std::int32_t x = middle[0] - 1; x <= middle[0] + 1; ++x) {
+          const glm::dvec3& point = points_[static_cast<std::size_t>(row + Wrapped(x, period_))];
+          const double dx = x + point.x - cells.x, dy = y + point.y - cells.y;
+          const double dz = z + point.z - cells.z;
+          least = std::min(least, dx * dx + dy * dy + dz * dz);
+        }
+      }
+    }
+    return 1.0 - least;
+  }
+
+ private:
+  int period_;
+  std::vector<glm::dvec3> points_;
+};
+
+/// Returns the texels of a sum of octaves, scaled to mean 0 and standard deviation 1.
+/// @param octave_of  makes a function of a point in cells, from a period in cells and a seed.
+template <typename OctaveOf>
+std::vector<float> OctaveTexels(int side, const NoiseOctaves& octaves, const OctaveOf& octave_of) {
+  const auto n = static_cast<std::size_t>(side);
+  std::vector<double> sum(n * n * n, 0.0);
+  double amplitude = 1.0;
+  int cells = octaves.cells;
+  for (int i = 0; i < octaves.octaves; ++i, cells *= 2, amplitude *= octaves.gain) {
+    const auto octave = octave_of(cells, octaves.seed + static_cast<std::uint32_t>(i));
+    const double per_texel = static_cast<double>(cells) / side;
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t z) {
+      double* texel = sum.data() + z * n * n;
+      for (std::size_t y = 0; y < n; ++y) {
+        for (std::size_t x = 0; x < n; ++x) {
+          *texel++ += amplitude * octave((glm::dvec3(x, y, z) + 0.5) * per_texel);
+        }
+      }
+    });
+  }
   double mean = 0.0, square = 0.0;
   for (const double value : sum) mean += value;
   mean /= static_cast<double>(sum.size());
@@ -146,20 +164,25 @@ CellDistances DistancesInCells(const glm::dvec2& cells, double time, int period,
 
 TilingNoise TilingNoise::Billow(int side, const NoiseOctaves& octaves) {
   CheckNoise(side, octaves);
-  return {side, OctaveTexels(side, octaves, Bump)};
+  return {side, OctaveTexels(side, octaves, [](int period, std::uint32_t seed) {
+            return [lattice = BumpLattice(period, seed)](const glm::dvec3& cells) {
+              return lattice.At(cells);
+            };
+          })};
 }
 
 TilingNoise TilingNoise::Value(int side, const NoiseOctaves& octaves) {
   CheckNoise(side, octaves);
-  return {side,
-          OctaveTexels(side, octaves, [](const glm::dvec3& cells, int period, std::uint32_t seed) {
-            return BlendedValues(cells, period, true, seed);
+  return {side, OctaveTexels(side, octaves, [](int period, std::uint32_t seed) {
+            return
+                [=](const glm::dvec3& cells) { return BlendedValues(cells, period, true, seed); };
           })};
 }
 
 TilingNoise::TilingNoise(int side, std::vector<float> texels)
     : side_(side),
       texels_(std::move(texels)),
+      least_(*std::min_element(texels_.begin(), texels_.end())),
       largest_(*std::max_element(texels_.begin(), texels_.end())) {}
 
 double TilingNoise::At(const glm::dvec3& periods) const {

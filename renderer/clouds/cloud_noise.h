@@ -56,7 +56,8 @@ class TilingNoise {
   /// Returns the noise. @param periods  coordinates in periods, within 1e6.
   [[nodiscard]] double At(const glm::dvec3& periods) const;
   [[nodiscard]] int side() const { return side_; }
-  /// Returns an upper bound of the noise.
+  /// Returns bounds of the noise.
+  [[nodiscard]] double Least() const { return static_cast<double>(least_); }
   [[nodiscard]] double Largest() const { return static_cast<double>(largest_); }
 
  private:
@@ -64,7 +65,7 @@ class TilingNoise {
 
   int side_;
   std::vector<float> texels_;
-  float largest_ = 0.0F;
+  float least_, largest_;
 };
 
 }  // namespace alpenglow::renderer

@@ -66,10 +66,43 @@ struct CloudPlan {
   glm::dvec2 lean;  // offset per height
 };
 
+/// The foot of a plume on the base of a cloud.
+struct PlumeFoot {
+  glm::dvec2 place_m;
+  double radius_m;
+};
+
+/// Returns the feet of a cloud's plumes. The first stands in the middle, and every other one beside
+/// an earlier one, within an ellipse. Large clouds have more plumes, not only larger ones, so that
+/// their outlines have detail of more scales.
+std::vector<PlumeFoot> PlumeFeet(double size_m, CountedRandom& random) {
+  constexpr int kTries = 12;
+  const glm::dvec2 axis = PortableCircle(random.Uniform());
+  const double stretch = random.Between(0.75, 1.35);
+  const double count = 3.0 + size_m / 110.0 * random.Between(0.7, 1.3);
+  const double mean_radius = 0.36 * size_m / std::sqrt(count);
+  std::vector<PlumeFoot> feet{{glm::dvec2(0.0), mean_radius * 1.15}};
+  while (static_cast<double>(feet.size()) < count) {
+    PlumeFoot foot{{}, mean_radius * random.Between(0.7, 1.3)};
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      const auto beside =
+          static_cast<std::size_t>(random.Uniform() * static_cast<double>(feet.size()));
+      const double away = random.Between(0.9, 1.5) * (feet[beside].radius_m + foot.radius_m);
+      foot.place_m = feet[beside].place_m + away * PortableCircle(random.Uniform());
+      const glm::dvec2 in_ellipse(glm::dot(foot.place_m, axis) / stretch,
+                                  (foot.place_m.y * axis.x - foot.place_m.x * axis.y) * stretch);
+      if (glm::length(in_ellipse) + foot.radius_m < 0.5 * size_m) break;
+    }
+    feet.push_back(foot);
+  }
+  return feet;
+}
+
 /// Adds one plume: spheres in a chain from the base to its top.
-void AddPlume(const CloudPlan& plan, const glm::dvec2& foot, double eccentricity,
-              CountedRandom& random, std::vector<CloudSphere>& plumes) {
-  const double radius = 0.5 * plan.size_m * random.Between(0.22, 0.42) * (1.0 - 0.3 * eccentricity);
+void AddPlume(const CloudPlan& plan, const PlumeFoot& foot, CountedRandom& random,
+              std::vector<CloudSphere>& plumes) {
+  const double radius = foot.radius_m;
+  const double eccentricity = std::min(1.0, 2.0 * glm::length(foot.place_m) / plan.size_m);
   const double top = std::max(
       0.9 * radius, plan.depth_m * (1.0 - 0.65 * eccentricity) * random.Between(0.55, 1.0));
   double height = 0.3 * radius;
@@ -77,23 +110,17 @@ void AddPlume(const CloudPlan& plan, const glm::dvec2& foot, double eccentricity
     const double share = height / top;
     const glm::dvec2 jitter(random.Between(-0.175, 0.175), random.Between(-0.175, 0.175));
     const double here = radius * (1.1 - 0.35 * share) * random.Between(0.85, 1.15);
-    plumes.push_back({glm::dvec3(foot + plan.lean * height + radius * jitter, height), here});
+    plumes.push_back(
+        {glm::dvec3(foot.place_m + plan.lean * height + radius * jitter, height), here});
     height += 0.8 * radius;
   } while (height <= top - 0.6 * radius);
 }
 
 /// Returns the spheres of a full cloud.
 std::vector<CloudSphere> SpheresOf(const CloudPlan& plan, CountedRandom& random) {
-  const glm::dvec2 axis = PortableCircle(random.Uniform());
-  const double stretch = random.Between(0.7, 1.3);
-  const int count =
-      3 + static_cast<int>(5.0 * std::sqrt(plan.size_m / 1000.0) * random.Between(0.6, 1.4));
   std::vector<CloudSphere> spheres;
-  for (int i = 0; i < count; ++i) {
-    const double eccentricity = i == 0 ? 0.0 : std::sqrt(random.Uniform());
-    const glm::dvec2 circle = 0.375 * plan.size_m * eccentricity * PortableCircle(random.Uniform());
-    const double u = circle.x * stretch, v = circle.y / stretch;
-    AddPlume(plan, u * axis + v * glm::dvec2(-axis.y, axis.x), eccentricity, random, spheres);
+  for (const PlumeFoot& foot : PlumeFeet(plan.size_m, random)) {
+    AddPlume(plan, foot, random, spheres);
   }
   const std::size_t plumes = spheres.size();
   const int levels = plan.size_m > 500.0 ? 2 : 1;
@@ -320,6 +347,7 @@ class SphereUnion {
   };
 
   [[nodiscard]] std::size_t Wrapped(int number) const {
+    if (number >= 0 && number < side_) return static_cast<std::size_t>(number);
     const int rest = number % side_;
     return static_cast<std::size_t>(rest < 0 ? rest + side_ : rest);
   }
@@ -332,7 +360,9 @@ class SphereUnion {
   void Add(const PlacedSphere& sphere, int layer, std::vector<float>& relief) {
     const double dz = bottom_m_ + kGrid_m * layer - sphere.centre_m.z;
     // Noise and offset raise the surface by less than this.
-    const double beyond = kCloudMargin_m + kMostRaised_m * sphere.relief;
+    // The surface of a small lobe is far from no larger sphere, whose terms reach further.
+    const double beyond =
+        std::min(kCloudMargin_m + kMostRaised_m * sphere.relief, 20.0 + 0.8 * sphere.radius_m);
     const double reach = sphere.radius_m + beyond;
     const double square = reach * reach - dz * dz;
     if (square <= 0.0) return;
@@ -410,12 +440,18 @@ class HeapShape final : public CloudShape {
   [[nodiscard]] double offset_m() const { return offset_m_; }
 
  private:
-  static constexpr double kLarge_m = 40.0, kSmall_m = 34.0, kBend_m = 22.0, kSmooth_m = 10.0;
+  static constexpr double kLarge_m = 45.0, kSmall_m = 40.0, kBend_m = 22.0, kSmooth_m = 10.0;
   static constexpr double kDeepestBase_m = 120.0;
 
   [[nodiscard]] double Depth(const glm::dvec3& point, double offset_m) const {
     const auto [depth, relief] = spheres_.At(point);
-    if (depth + kMostRaised_m * relief <= -kCloudMargin_m) return kLeastCloudDepth_m;
+    const double over_base = 0.8 * (point.z - base_m_);
+    if (depth + kMostRaised_m * relief <= -kCloudMargin_m || over_base < -kDeepestBase_m) {
+      return kLeastCloudDepth_m;
+    }
+    if (std::min(depth - most_lowered_m_, over_base - kDeepestBase_m) > kMostCloudDepth_m) {
+      return kMostCloudDepth_m;
+    }
     const double base =
         base_m_ + base_waves_m_.At(glm::dvec2(point)) +
         10.0 * relief *
@@ -431,15 +467,19 @@ class HeapShape final : public CloudShape {
                           ShapeNoise::Smooth().At(at + glm::dvec3(0.37, 0.11, 0.7)),
                           ShapeNoise::Smooth().At(at + glm::dvec3(0.71, 0.53, 0.2)));
     const glm::dvec3 bent = risen + kBend_m * bend;
-    const double noise = kLarge_m * ShapeNoise::Billow().At(bent / kLargeTile_m) +
-                         kSmall_m * ShapeNoise::Billow().At(bent / kSmallTile_m) +
-                         kSmooth_m * bend.x;
+    const double noise =
+        kLarge_m *
+            ShapeNoise::Billow().At(glm::dvec3(bent.x, bent.y, 0.4 * bent.z) / kLargeTile_m) +
+        kSmall_m * ShapeNoise::Billow().At(bent / kSmallTile_m) + kSmooth_m * bend.x;
     const double height = std::clamp((point.z - base_m_) / 250.0, 0.0, 1.0);
     const double raised = (0.45 + 0.55 * height) * noise;
     return raised > 0.0 ? raised / (1.0 + raised / kMostNoise_m) : raised;
   }
 
   double base_m_, rise_m_;
+  double most_lowered_m_ = kMostOffset_m - kLarge_m * ShapeNoise::Billow().Least() -
+                           kSmall_m * ShapeNoise::Billow().Least() -
+                           kSmooth_m * ShapeNoise::Smooth().Least();  // by which noise can lower F
   SphereUnion spheres_;
   PeriodicMap base_waves_m_;
   double offset_m_ = 0.0;

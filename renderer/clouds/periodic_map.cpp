@@ -47,6 +47,7 @@ PeriodicMap::PeriodicMap(int side, double period_m,
 
 double PeriodicMap::Sample(std::int32_t x, std::int32_t y) const {
   const auto wrapped = [&](std::int32_t number) {
+    if (number >= 0 && number < side_) return static_cast<std::size_t>(number);
     const std::int32_t rest = number % side_;
     return static_cast<std::size_t>(rest < 0 ? rest + side_ : rest);
   };
