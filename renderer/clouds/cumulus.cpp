@@ -79,15 +79,15 @@ std::vector<PlumeFoot> PlumeFeet(double size_m, CountedRandom& random) {
   constexpr int kTries = 12;
   const glm::dvec2 axis = PortableCircle(random.Uniform());
   const double stretch = random.Between(0.75, 1.35);
-  const double count = 3.0 + size_m / 110.0 * random.Between(0.7, 1.3);
-  const double mean_radius = 0.36 * size_m / std::sqrt(count);
+  const double count = 3.0 + size_m / 55.0 * random.Between(0.7, 1.3);
+  const double mean_radius = 0.33 * size_m / std::sqrt(count);
   std::vector<PlumeFoot> feet{{glm::dvec2(0.0), mean_radius * 1.15}};
   while (static_cast<double>(feet.size()) < count) {
     PlumeFoot foot{{}, mean_radius * random.Between(0.7, 1.3)};
     for (int attempt = 0; attempt < kTries; ++attempt) {
       const auto beside =
           static_cast<std::size_t>(random.Uniform() * static_cast<double>(feet.size()));
-      const double away = random.Between(0.9, 1.5) * (feet[beside].radius_m + foot.radius_m);
+      const double away = random.Between(1.0, 1.5) * (feet[beside].radius_m + foot.radius_m);
       foot.place_m = feet[beside].place_m + away * PortableCircle(random.Uniform());
       const glm::dvec2 in_ellipse(glm::dot(foot.place_m, axis) / stretch,
                                   (foot.place_m.y * axis.x - foot.place_m.x * axis.y) * stretch);
@@ -338,7 +338,7 @@ class SphereUnion {
   }
 
  private:
-  static constexpr double kFullRelief_m = 700.0;  // size of a cloud with the full relief
+  static constexpr double kFullRelief_m = 1300.0;  // size of a cloud with the full relief
   static constexpr double kEmpty_m = -200.0;
 
   struct PlacedSphere {
@@ -440,7 +440,7 @@ class HeapShape final : public CloudShape {
   [[nodiscard]] double offset_m() const { return offset_m_; }
 
  private:
-  static constexpr double kLarge_m = 45.0, kSmall_m = 40.0, kBend_m = 22.0, kSmooth_m = 10.0;
+  static constexpr double kLarge_m = 70.0, kSmall_m = 60.0, kBend_m = 22.0, kSmooth_m = 10.0;
   static constexpr double kDeepestBase_m = 120.0;
 
   [[nodiscard]] double Depth(const glm::dvec3& point, double offset_m) const {
