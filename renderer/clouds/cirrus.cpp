@@ -47,9 +47,9 @@ class FibreSource {
     tuft.place = PlaceOf(random);
     const glm::dvec2 turn = PortableCircle(random.Between(-0.02, 0.02));
     tuft.wind = {wind_.x * turn.x - wind_.y * turn.y, wind_.x * turn.y + wind_.y * turn.x};
-    tuft.length_m = random.Between(2500.0, 7000.0) * options_.depth_m / 1200.0;
+    tuft.length_m = random.Between(2000.0, 8000.0) * options_.depth_m / 1200.0;
     tuft.across_m = random.Between(150.0, 700.0);
-    tuft.along_m = random.Between(100.0, 900.0);
+    tuft.along_m = random.Between(300.0, 4000.0);
     const double lives = time_s_ / kLife_s + random.Uniform();
     const double age = lives - std::floor(lives);
     tuft.strength = SmoothStep(0.0, 0.3, age) * (1.0 - SmoothStep(0.7, 1.0, age));
@@ -69,8 +69,8 @@ class FibreSource {
                                     tuft.along_m * random.Between(-0.5, 0.5) * tuft.wind,
                                 random.Between(-0.08, 0.08) * options_.depth_m);
     const double possible = head.z - options_.base_altitude_m;
-    const double fall = possible * random.Between(0.3, 1.0);
-    const double length = tuft.length_m * fall / possible * random.Between(0.85, 1.15);
+    const double fall = possible * random.Between(0.2, 1.0);
+    const double length = tuft.length_m * fall / possible * random.Between(0.8, 1.2);
     const double radius = tuft.strength * random.Between(kLeastRadius_m, kMostRadius_m);
     const double knots = random.Uniform() * 1000.0;
     const int nodes = 3 + static_cast<int>(length / kNodeSpacing_m);

@@ -55,6 +55,10 @@ double BlendedValues(const glm::dvec3& cells, int period, bool wraps_z, std::uin
   return 2.0 * (below + fade[2] * (plane(1) - below)) - 1.0;
 }
 
+/// Returns the shift of a row of cells: every other row stands half a cell aside, so that the cells
+/// form no square pattern.
+double RowShift(std::int32_t row) { return (row & 1) != 0 ? 0.5 : 0.0; }
+
 /// Round bumps around one hashed point per cell of a lattice that repeats along all axes.
 class BumpLattice {
  public:
@@ -139,7 +143,7 @@ double ValueNoise(const glm::dvec3& cells, int period, std::uint32_t seed) {
 
 CellDistances DistancesInCells(const glm::dvec2& cells, double time, int period,
                                std::uint32_t seed) {
-  constexpr double kJitter = 0.8;  // of a cell
+  constexpr double kJitter = 0.9;  // of a cell
   const std::int32_t before = FloorOf(time);
   const double share = shared::NoiseFade(time - before);
   const auto place = [&](std::int32_t x, std::int32_t y, std::uint32_t axis) {
@@ -151,8 +155,8 @@ CellDistances DistancesInCells(const glm::dvec2& cells, double time, int period,
   const std::int32_t column = FloorOf(cells.x), row = FloorOf(cells.y);
   double nearest = 9.0, second = 9.0;  // squares
   for (std::int32_t y = row - 1; y <= row + 1; ++y) {
-    for (std::int32_t x = column - 1; x <= column + 1; ++x) {
-      const double dx = x + place(x, y, 0U) - cells.x;
+    for (std::int32_t x = column - 2; x <= column + 1; ++x) {
+      const double dx = x + RowShift(y) + place(x, y, 0U) - cells.x;
       const double dy = y + place(x, y, 0x5bd1e995U) - cells.y;
       const double square = dx * dx + dy * dy;
       second = std::min(second, std::max(nearest, square));

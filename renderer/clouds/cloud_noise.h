@@ -32,7 +32,8 @@ namespace alpenglow::renderer {
 struct CellDistances {
   double nearest, second;
 };
-/// Returns the distances on a plane of cells that repeats after `period` of them along x and y.
+/// Returns the distances on a plane of cells that repeats after `period` of them along x and y; the
+/// period is even.
 /// @param time  at each whole time the points are in other places of their cells.
 [[nodiscard]] CellDistances DistancesInCells(const glm::dvec2& cells, double time, int period,
                                              std::uint32_t seed);

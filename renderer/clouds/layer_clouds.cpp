@@ -67,31 +67,35 @@ class LayerMap {
   }
   [[nodiscard]] CellDistances Cells(double size_m, double change_s, std::uint32_t seed,
                                     const glm::dvec2& place) const {
-    const int count = std::max(1, static_cast<int>(options_.period_m / size_m + 0.5));
+    const int count = 2 * std::max(1, static_cast<int>(0.5 * options_.period_m / size_m + 0.5));
     return DistancesInCells(place * (count / options_.period_m), time_s_ / change_s, count,
                             seed + 1000U * options_.seed);
   }
 
+  /// Returns noise as an offset on the ground; its two components are independent.
+  [[nodiscard]] glm::dvec2 Offset(const GroundNoise& noise, const glm::dvec2& place) const {
+    GroundNoise north = noise;
+    north.seed += 100U;
+    return {Noise(noise, place), Noise(north, place)};
+  }
+
   [[nodiscard]] double Stratocumulus(const glm::dvec2& place) const {
-    const GroundNoise east{2560.0, 4, 0.55, 5000.0, 1}, north{2560.0, 4, 0.55, 5000.0, 2};
-    const glm::dvec2 bent = place + 420.0 * glm::dvec2(Noise(east, place), Noise(north, place));
+    const glm::dvec2 bent = place + 600.0 * Offset({2560.0, 4, 0.55, 5000.0, 1}, place);
     const CellDistances large = Cells(2050.0, 7000.0, 3, bent);
     const CellDistances small = Cells(760.0, 2500.0, 4, bent);
     return 1.1 * SmoothStep(0.0, 0.55, large.second - large.nearest) +
-           0.55 * SmoothStep(0.0, 0.5, small.second - small.nearest) +
-           0.55 * Noise({5120.0, 7, 0.56, 9000.0, 5}, place);
+           0.5 * SmoothStep(0.0, 0.5, small.second - small.nearest) +
+           0.6 * Noise({5120.0, 7, 0.56, 9000.0, 5}, place);
   }
 
   [[nodiscard]] double Altocumulus(const glm::dvec2& place) const {
-    const GroundNoise small_east{1500.0, 3, 0.5, 2500.0, 1}, small_north{1500.0, 3, 0.5, 2500.0, 2};
-    const glm::dvec2 bent =
-        place + 120.0 * glm::dvec2(Noise(small_east, place), Noise(small_north, place)) +
-        350.0 * glm::dvec2(Noise({6827.0, 1, 0.5, 9000.0, 6}, place),
-                           Noise({6827.0, 1, 0.5, 9000.0, 7}, place));
-    const CellDistances cells = Cells(430.0, 1800.0, 3, bent);
+    const glm::dvec2 bent = place + 150.0 * Offset({1280.0, 3, 0.5, 2500.0, 1}, place) +
+                            900.0 * Offset({5120.0, 1, 0.5, 9000.0, 6}, place);
+    const CellDistances cells = Cells(400.0, 1800.0, 3, bent);
     const double rows = PortableCircle(glm::dot(waves_, bent) / options_.period_m).x;
-    return 1.0 - 1.5 * cells.nearest * cells.nearest + 0.35 * rows +
-           0.9 * Noise({6827.0, 4, 0.5, 9000.0, 5}, place) +
+    const double rows_here = SmoothStep(-0.5, 0.4, Noise({6827.0, 2, 0.5, 9000.0, 9}, place));
+    return 1.0 - 1.7 * cells.nearest * cells.nearest + 0.45 * rows_here * rows +
+           1.1 * Noise({6827.0, 5, 0.55, 9000.0, 5}, place) +
            0.15 * Noise({320.0, 2, 0.5, 900.0, 8}, place);
   }
 
