@@ -94,7 +94,7 @@ class FibreSource {
     const GroundNoise patches{kPatches_m, 2, 0.5, 1e9, 5U + 1000U * options_.seed};
     for (;;) {
       const glm::dvec2 place = options_.period_m * glm::dvec2(random.Uniform(), random.Uniform());
-      const double likely = SmoothStep(-0.4, 0.5, patches.At(place, 0.0, options_.period_m));
+      const double likely = 0.03 + SmoothStep(-0.4, 0.5, patches.At(place, 0.0, options_.period_m));
       if (random.Uniform() > likely) continue;
       const double height = options_.depth_m * random.Between(0.8, 0.92);
       return {place, options_.base_altitude_m + height};

@@ -14,20 +14,26 @@ namespace alpenglow::renderer {
 namespace {
 
 constexpr double kColumnSpacing_m = 160.0;
+constexpr int kLeastColumns = 64;  // along x and y
 constexpr int kHalvings = 10;
 
-/// Returns whether the optical depth of a column exceeds a limit.
-/// @param depth_m  of the shape at a point.
+/// Returns whether the optical depth of the column in the middle of a voxel exceeds a limit. The
+/// depth there is the mean of the four corners around it, as that of a stored field is.
+/// @param voxel  number along x and y. @param depth_m  of the shape at a point.
 template <typename Depth>
-bool IsCovered(const CloudLattice& lattice, const CloudMatter& matter, const glm::dvec2& place,
+bool IsCovered(const CloudLattice& lattice, const CloudMatter& matter, const glm::ivec2& voxel,
                double least_optical_depth, const Depth& depth_m) {
-  const double step = lattice.voxel_m.z;
   double sum = 0.0;
   for (int k = 0; k < lattice.voxels[2]; ++k) {
-    const double z = lattice.origin_m.z + (k + 0.5) * step;
-    const double core = matter.column.Extinction_per_m(z);
+    const glm::dvec3 corner = lattice.origin_m + lattice.voxel_m * glm::dvec3(voxel, k);
+    const double core = matter.column.Extinction_per_m(corner.z);
     if (core == 0.0) continue;
-    sum += step * core * matter.edge.FractionAt(depth_m({place.x, place.y, z}));
+    double depth = 0.0;
+    for (const glm::dvec2 offset : {glm::dvec2(0, 0), {1, 0}, {0, 1}, {1, 1}}) {
+      depth += 0.25 * std::clamp(depth_m(corner + lattice.voxel_m * glm::dvec3(offset, 0.0)),
+                                 kLeastCloudDepth_m, kMostCloudDepth_m);
+    }
+    sum += lattice.voxel_m.z * core * matter.edge.FractionAt(depth);
     if (sum > least_optical_depth) return true;
   }
   return false;
@@ -37,11 +43,11 @@ bool IsCovered(const CloudLattice& lattice, const CloudMatter& matter, const glm
 class Columns {
  public:
   /// The columns lie anywhere in their cells, so that rows of clouds cannot fall between them.
-  Columns(double period_m, int side) {
+  Columns(int voxels, int side) {
     for (int y = 0; y < side; ++y) {
       for (int x = 0; x < side; ++x) {
         const glm::dvec2 jitter(LatticeUniform(x, y, 1U), LatticeUniform(x, y, 2U));
-        places_.push_back(period_m / side * (glm::dvec2(x, y) + jitter));
+        voxels_.emplace_back((glm::dvec2(x, y) + jitter) * (static_cast<double>(voxels) / side));
       }
     }
   }
@@ -49,25 +55,25 @@ class Columns {
   /// Returns 1 for every column for which a predicate is true.
   template <typename Predicate>
   [[nodiscard]] std::vector<char> Evaluated(const Predicate& predicate) const {
-    std::vector<char> values(places_.size());
-    tbb::parallel_for(std::size_t{0}, places_.size(),
-                      [&](std::size_t i) { values[i] = predicate(places_[i]) ? 1 : 0; });
+    std::vector<char> values(voxels_.size());
+    tbb::parallel_for(std::size_t{0}, voxels_.size(),
+                      [&](std::size_t i) { values[i] = predicate(voxels_[i]) ? 1 : 0; });
     return values;
   }
 
   /// Drops the columns with a value; returns their number.
   std::size_t KeepOthers(const std::vector<char>& values, bool dropped) {
-    std::vector<glm::dvec2> kept;
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      if ((values[i] == 1) != dropped) kept.push_back(places_[i]);
+    std::vector<glm::ivec2> kept;
+    for (std::size_t i = 0; i < voxels_.size(); ++i) {
+      if ((values[i] == 1) != dropped) kept.push_back(voxels_[i]);
     }
-    const std::size_t count = places_.size() - kept.size();
-    places_ = std::move(kept);
+    const std::size_t count = voxels_.size() - kept.size();
+    voxels_ = std::move(kept);
     return count;
   }
 
  private:
-  std::vector<glm::dvec2> places_;
+  std::vector<glm::ivec2> voxels_;
 };
 
 }  // namespace
@@ -101,12 +107,12 @@ double CoverOf(const OpticalDepthMap& map, double least_optical_depth) {
 
 double ParameterForCover(const CloudLattice& lattice, const CloudMatter& matter,
                          const DepthWithParameter& depth_m, const WantedCover& wanted) {
-  const int side = std::max(16, static_cast<int>(lattice.size_m().x / kColumnSpacing_m));
-  Columns columns(lattice.size_m().x, side);
+  const int side = std::max(kLeastColumns, static_cast<int>(lattice.size_m().x / kColumnSpacing_m));
+  Columns columns(lattice.voxels[0], side);
   const auto covered_at = [&](double parameter) {
     const auto depth = [&](const glm::dvec3& point) { return depth_m(point, parameter); };
-    return columns.Evaluated([&](const glm::dvec2& place) {
-      return IsCovered(lattice, matter, place, wanted.least_optical_depth, depth);
+    return columns.Evaluated([&](const glm::ivec2& voxel) {
+      return IsCovered(lattice, matter, voxel, wanted.least_optical_depth, depth);
     });
   };
   const auto target = static_cast<std::size_t>(wanted.cover * side * side + 0.5);

@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "atmosphere/base/error.h"
@@ -142,6 +143,126 @@ class DistanceSweep {
   bool is_periodic_;
 };
 
+/// Distances to the nearest of some places, axis by axis: the square of a distance is the sum of the
+/// squares along the axes (Saito and Toriwaki 1994, Pattern Recognition 27, 1551).
+class DistanceGrid {
+ public:
+  /// @param count  places along x, y, z. @param wraps  whether x and y repeat.
+  DistanceGrid(const std::array<int, 3>& count, const glm::dvec3& spacing, bool wraps)
+      : count_(count), spacing_(spacing), wraps_(wraps) {}
+
+  /// Returns the distance of every place to the nearest one with `is_target`; at most kFar_m.
+  [[nodiscard]] std::vector<float> To(const std::vector<char>& is_target) const {
+    std::vector<float> square(is_target.size());
+    for (std::size_t i = 0; i < square.size(); ++i)
+      square[i] = is_target[i] ? 0.0F : kFar_m * kFar_m;
+    std::size_t stride = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t first = 0; first < square.size(); ++first) {
+        if (first / stride % static_cast<std::size_t>(count_[axis]) == 0) {
+          AlongLine(square, first, stride, axis);
+        }
+      }
+      stride *= static_cast<std::size_t>(count_[axis]);
+    }
+    for (float& value : square) value = std::sqrt(value);
+    return square;
+  }
+
+ private:
+  static constexpr float kFar_m = 400.0F;  // beyond all stored depths
+
+  /// Replaces each value of a line by the least sum of a value and the square of its distance.
+  void AlongLine(std::vector<float>& square, std::size_t first, std::size_t stride,
+                 std::size_t axis) const {
+    const int length = count_[axis];
+    const double step = spacing_[static_cast<int>(axis)];
+    const int reach = std::min(length - 1, static_cast<int>(static_cast<double>(kFar_m) / step));
+    std::vector<float> line(static_cast<std::size_t>(length));
+    for (std::size_t i = 0; i < line.size(); ++i) line[i] = square[first + i * stride];
+    for (int i = 0; i < length; ++i) {
+      float least = line[static_cast<std::size_t>(i)];
+      for (int away = 1; away <= reach; ++away) {
+        const auto distance = static_cast<float>(away * step * (away * step));
+        if (distance >= least) break;
+        for (int j : {i - away, i + away}) {
+          if (wraps_ && axis < 2) j = (j + length) % length;
+          if (j < 0 || j >= length) continue;
+          least = std::min(least, line[static_cast<std::size_t>(j)] + distance);
+        }
+      }
+      square[first + static_cast<std::size_t>(i) * stride] = least;
+    }
+  }
+
+  std::array<int, 3> count_;
+  glm::dvec3 spacing_;
+  bool wraps_;
+};
+
+void CheckSamples(const std::vector<float>& values, std::size_t corners, std::string_view name,
+                  bool must_be_positive) {
+  if (values.size() != corners) {
+    throw InputError(
+        fmt::format("{} values of {}; the lattice has {} corners", values.size(), name, corners));
+  }
+  for (std::size_t i = 0; i < corners; ++i) {
+    const bool is_valid = must_be_positive ? values[i] > 0.0F : values[i] >= 0.0F;
+    if (!is_valid || !std::isfinite(values[i])) {
+      throw InputError(fmt::format("value {} of the {} is {}; it must be finite and {}", i, name,
+                                   values[i], must_be_positive ? "positive" : "not negative"));
+    }
+  }
+}
+
+/// The samples of a field of others by corner, with their depths.
+class SampleGrid {
+ public:
+  SampleGrid(const CloudLattice& lattice, const CloudSamples& samples)
+      : lattice_(lattice), samples_(samples) {
+    const int beyond = lattice.is_periodic ? 0 : 1;
+    count_ = {lattice.voxels[0] + beyond, lattice.voxels[1] + beyond, lattice.voxels[2] + 1};
+    std::size_t corners = 1;
+    for (const int count : count_) corners *= static_cast<std::size_t>(count);
+    CheckSamples(samples.extinction_per_m, corners, "extinction", false);
+    if (!samples.effective_radius_um.empty()) {
+      CheckSamples(samples.effective_radius_um, corners, "effective radius", true);
+    }
+    RequireInRange(samples.single_scattering_albedo, 0.0, 1.0, "the single-scattering albedo");
+    std::vector<char> is_cloud(corners), is_clear(corners);
+    for (std::size_t i = 0; i < corners; ++i) {
+      is_cloud[i] = samples.extinction_per_m[i] > 0.0F ? 1 : 0;
+      is_clear[i] = is_cloud[i] != 0 ? 0 : 1;
+    }
+    const DistanceGrid distances(count_, lattice.voxel_m, lattice.is_periodic);
+    to_cloud_ = distances.To(is_cloud);
+    to_clear_ = distances.To(is_clear);
+  }
+
+  /// Returns the sample of a corner; corners beyond the end of an open field are those of its end.
+  [[nodiscard]] std::size_t Index(int x, int y, int z) const {
+    const auto number = [&](int at, std::size_t axis) {
+      const bool wraps = lattice_.is_periodic && axis < 2;
+      return static_cast<std::size_t>(wraps ? at % count_[axis] : std::min(at, count_[axis] - 1));
+    };
+    return (number(z, 2) * static_cast<std::size_t>(count_[1]) + number(y, 1)) *
+               static_cast<std::size_t>(count_[0]) +
+           number(x, 0);
+  }
+  [[nodiscard]] double depth_m(std::size_t sample) const {
+    return static_cast<double>(to_clear_[sample]) - static_cast<double>(to_cloud_[sample]);
+  }
+  [[nodiscard]] float radius_um(std::size_t sample) const {
+    return samples_.effective_radius_um.empty() ? 10.0F : samples_.effective_radius_um[sample];
+  }
+
+ private:
+  const CloudLattice& lattice_;
+  const CloudSamples& samples_;
+  std::array<int, 3> count_{};
+  std::vector<float> to_cloud_, to_clear_;
+};
+
 }  // namespace
 
 std::shared_ptr<const CloudField::Bricks> CloudField::Collected(const CloudLattice& lattice,
@@ -230,6 +351,33 @@ CloudField::CloudField(const CloudLattice& lattice, const CloudShape& shape, Clo
   CheckDetail(lattice_, matter_.detail);
   bricks_ = Collected(lattice_,
                       [&](const std::array<int, 3>& brick) { return ShapeBrick(shape, brick); });
+}
+
+CloudField::CloudField(const CloudLattice& lattice, const CloudSamples& samples)
+    : lattice_(lattice),
+      per_voxel_(1.0 / lattice.voxel_m),
+      albedo_(samples.single_scattering_albedo) {
+  CheckLattice(lattice_);
+  const SampleGrid grid(lattice_, samples);
+  bricks_ = Collected(lattice_, [&](const std::array<int, 3>& brick) -> std::optional<BrickValues> {
+    BrickValues values{};
+    std::size_t at = 0;
+    for (int z = 0; z < kCorners; ++z) {
+      for (int y = 0; y < kCorners; ++y) {
+        for (int x = 0; x < kCorners; ++x) {
+          const std::size_t sample =
+              grid.Index(kSide * brick[0] + x, kSide * brick[1] + y, kSide * brick[2] + z);
+          values.depth[at++] = ByteOfDepth(grid.depth_m(sample));
+          values.extinction_per_m.push_back(samples.extinction_per_m[sample]);
+          values.radius_um.push_back(grid.radius_um(sample));
+        }
+      }
+    }
+    values.majorant_per_m = static_cast<double>(
+        *std::max_element(values.extinction_per_m.begin(), values.extinction_per_m.end()));
+    if (values.majorant_per_m == 0.0) return std::nullopt;
+    return values;
+  });
 }
 
 std::optional<glm::dvec2> CloudField::period_m() const {

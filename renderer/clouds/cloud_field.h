@@ -99,7 +99,7 @@ struct CloudMatter {
 /// one corner more than voxels along each axis; a periodic one along z only.
 struct CloudSamples {
   std::vector<float> extinction_per_m;     // finite and not negative
-  std::vector<float> effective_radius_um;  // > 0 where there is extinction; empty: 10 everywhere
+  std::vector<float> effective_radius_um;  // finite and > 0; empty: 10 everywhere
   double single_scattering_albedo = 1.0;   // in [0, 1]
 };
 
@@ -121,8 +121,8 @@ class CloudField {
   /// Samples a shape at the corners of voxels. The result does not depend on the number of threads.
   /// Throws InputError for a lattice out of range or a period of the detail that does not fit.
   CloudField(const CloudLattice& lattice, const CloudShape& shape, CloudMatter matter);
-  /// Stores the samples of a field of others. Its depth is the distance to the surface of the
-  /// corners with extinction, and positive inside.
+  /// Stores the samples of a field of others. The depth of a corner with extinction is its distance
+  /// from the nearest corner without it; that of a corner without it is the same negative.
   /// Throws InputError that states the error.
   CloudField(const CloudLattice& lattice, const CloudSamples& samples);
 

@@ -57,7 +57,8 @@ CloudGenus CloudGenusNamed(std::string_view name) {
 }
 
 void CheckCloudOptions(const CloudOptions& options) {
-  RequireKey("cover", options.cover, 0.0, 1.0);
+  RequireKey("cover", options.cover, 0.0,
+             options.genus == CloudGenus::kCumulus ? kMostCumulusCover : 1.0);
   RequireKey("base", options.base_altitude_m, 0.0, 15000.0);
   RequireKey("depth", options.depth_m, 100.0, 4000.0);
   if (options.genus == CloudGenus::kCirrus) {

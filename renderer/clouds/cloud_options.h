@@ -30,10 +30,13 @@ inline constexpr EnumNames kCloudGenusNames{{std::pair{CloudGenus::kCumulus, "cu
 /// Horizontal periods are multiples of this length, which the noise of the shapes divides.
 inline constexpr double kPeriodStep_m = 2560.0;
 
+/// Above this cover, cumulus merge to a deck, which is stratocumulus.
+inline constexpr double kMostCumulusCover = 0.8;
+
 /// A layer of clouds.
 struct CloudOptions {
   CloudGenus genus = CloudGenus::kCumulus;
-  double cover = 0.3;                     // in [0, 1]
+  double cover = 0.3;                     // in [0, 1]; of cumulus at most kMostCumulusCover
   double base_altitude_m = 1200.0;        // in [0, 11000]; of cirrus in [0, 15000]
   double depth_m = 1500.0;                // from the base to the highest tops, in [100, 4000]
   double droplet_number_per_cm3 = 250.0;  // in [1, 5000]; cirrus has none

@@ -25,7 +25,7 @@ constexpr double kBreak_m = 1300.0, kBreakWidth_m = 900.0;
 constexpr double kSizeExponent = -1.7;
 constexpr double kGrid_m = 40.0;        // of places and of the union of spheres
 constexpr double kUnion_m = 14.0;       // s
-constexpr double kMostOffset_m = 20.0;  // for the cover
+constexpr double kMostOffset_m = 30.0;  // for the cover
 constexpr double kMostNoise_m = 60.0;   // bound of the noise on the heap
 constexpr double kMostRaised_m = kMostOffset_m + kMostNoise_m;
 constexpr double kLean = 0.12;  // offset along the wind per height
@@ -139,6 +139,10 @@ double GrowthAt(double age) {
   return 1.0 - lacking * lacking;
 }
 constexpr double kMeanSquareGrowth = 0.3 + 0.7 * 8.0 / 15.0;
+
+/// Returns the cover of footprints that gives a cover of clouds: noise cuts more away at the rims of
+/// clouds than it adds. The offset of the depth makes the cover exact.
+double FootprintCover(double cover) { return std::min(0.99, cover * (1.06 + 0.3 * cover)); }
 
 /// Returns a cloud of the sequence, without its place.
 CumulusCloud DrawnCloud(const CloudOptions& options, int number, double time_s) {
@@ -488,9 +492,10 @@ class HeapShape final : public CloudShape {
 }  // namespace
 
 std::vector<CumulusCloud> CumulusPopulation(const CloudOptions& options, double time_s) {
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 5;
+  const double footprints = FootprintCover(options.cover);
   const double cells = options.period_m * options.period_m / (kGrid_m * kGrid_m);
-  double wanted = options.cover * cells;  // sum of the mean areas of all clouds
+  double wanted = footprints * cells;  // sum of the mean areas of all clouds
   double area = 0.0;
   std::vector<CumulusCloud> clouds;
   for (int round = 0; round < kRounds; ++round) {
@@ -499,8 +504,8 @@ std::vector<CumulusCloud> CumulusPopulation(const CloudOptions& options, double 
       area += kMeanSquareGrowth * static_cast<double>(Footprint(clouds.back(), 1.0).size());
     }
     const double cover = Placing(options).PlaceAll(clouds);
-    if (cover >= 0.98 * options.cover) break;
-    wanted *= std::min(2.0, options.cover / cover);
+    if (cover >= 0.99 * footprints) break;
+    wanted *= std::min(2.0, footprints / cover);
   }
   return clouds;
 }
