@@ -52,7 +52,7 @@ class FibreSource {
     tuft.along_m = random.Between(300.0, 4000.0);
     const double lives = time_s_ / kLife_s + random.Uniform();
     const double age = lives - std::floor(lives);
-    tuft.strength = SmoothStep(0.0, 0.3, age) * (1.0 - SmoothStep(0.7, 1.0, age));
+    tuft.strength = SmoothRamp(0.0, 0.3, age) * (1.0 - SmoothRamp(0.7, 1.0, age));
     tuft.fibres = 20 + static_cast<int>(60.0 * random.Uniform());
     return tuft;
   }
@@ -80,7 +80,7 @@ class FibreSource {
       // Equal steps of the way along the wind, which is the square of the fall.
       const glm::dvec3 place(glm::dvec2(head) - length * share * tuft.wind,
                              head.z - fall * std::sqrt(share));
-      const double fade = SmoothStep(-0.02, 0.06, share) * (1.0 - SmoothStep(0.35, 1.0, share));
+      const double fade = SmoothRamp(-0.02, 0.06, share) * (1.0 - SmoothRamp(0.35, 1.0, share));
       const double knot =
           1.0 + 0.45 * ValueNoise({knots, 0.0, length * share / 500.0}, 1 << 20, 77U);
       fibre.push_back({Drifted(place), radius * fade * knot});
@@ -94,7 +94,7 @@ class FibreSource {
     const GroundNoise patches{kPatches_m, 2, 0.5, 1e9, 5U + 1000U * options_.seed};
     for (;;) {
       const glm::dvec2 place = options_.period_m * glm::dvec2(random.Uniform(), random.Uniform());
-      const double likely = 0.03 + SmoothStep(-0.4, 0.5, patches.At(place, 0.0, options_.period_m));
+      const double likely = 0.03 + SmoothRamp(-0.4, 0.5, patches.At(place, 0.0, options_.period_m));
       if (random.Uniform() > likely) continue;
       const double height = options_.depth_m * random.Between(0.8, 0.92);
       return {place, options_.base_altitude_m + height};

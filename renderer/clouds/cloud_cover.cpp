@@ -15,14 +15,14 @@ namespace {
 
 constexpr double kColumnSpacing_m = 160.0;
 constexpr int kLeastColumns = 64;  // along x and y
-constexpr int kHalvings = 10;
+constexpr int kCoverHalvings = 10;
 
 /// Returns whether the optical depth of the column in the middle of a voxel exceeds a limit. The
 /// depth there is the mean of the four corners around it, as that of a stored field is.
 /// @param voxel  number along x and y. @param depth_m  of the shape at a point.
 template <typename Depth>
-bool IsCovered(const CloudLattice& lattice, const CloudMatter& matter, const glm::ivec2& voxel,
-               double least_optical_depth, const Depth& depth_m) {
+bool ColumnIsCovered(const CloudLattice& lattice, const CloudMatter& matter,
+                     const glm::ivec2& voxel, double least_optical_depth, const Depth& depth_m) {
   double sum = 0.0;
   for (int k = 0; k < lattice.voxels[2]; ++k) {
     const glm::dvec3 corner = lattice.origin_m + lattice.voxel_m * glm::dvec3(voxel, k);
@@ -39,11 +39,11 @@ bool IsCovered(const CloudLattice& lattice, const CloudMatter& matter, const glm
   return false;
 }
 
-/// Columns of a field whose cover is not decided yet.
-class Columns {
+/// UndecidedColumns of a field whose cover is not decided yet.
+class UndecidedColumns {
  public:
   /// The columns lie anywhere in their cells, so that rows of clouds cannot fall between them.
-  Columns(int voxels, int side) {
+  UndecidedColumns(int voxels, int side) {
     for (int y = 0; y < side; ++y) {
       for (int x = 0; x < side; ++x) {
         const glm::dvec2 jitter(LatticeUniform(x, y, 1U), LatticeUniform(x, y, 2U));
@@ -108,19 +108,19 @@ double CoverOf(const OpticalDepthMap& map, double least_optical_depth) {
 double ParameterForCover(const CloudLattice& lattice, const CloudMatter& matter,
                          const DepthWithParameter& depth_m, const WantedCover& wanted) {
   const int side = std::max(kLeastColumns, static_cast<int>(lattice.size_m().x / kColumnSpacing_m));
-  Columns columns(lattice.voxels[0], side);
+  UndecidedColumns columns(lattice.voxels[0], side);
   const auto covered_at = [&](double parameter) {
     const auto depth = [&](const glm::dvec3& point) { return depth_m(point, parameter); };
     return columns.Evaluated([&](const glm::ivec2& voxel) {
-      return IsCovered(lattice, matter, voxel, wanted.least_optical_depth, depth);
+      return ColumnIsCovered(lattice, matter, voxel, wanted.least_optical_depth, depth);
     });
   };
   const auto target = static_cast<std::size_t>(wanted.cover * side * side + 0.5);
   double low = wanted.low, high = wanted.high;
-  // Columns that are covered at the low end, or not at the high end, are the same between them.
+  // UndecidedColumns that are covered at the low end, or not at the high end, are the same between them.
   std::size_t covered = columns.KeepOthers(covered_at(low), true);
   columns.KeepOthers(covered_at(high), false);
-  for (int halving = 0; halving < kHalvings; ++halving) {
+  for (int halving = 0; halving < kCoverHalvings; ++halving) {
     const double middle = 0.5 * (low + high);
     const std::vector<char> at_middle = covered_at(middle);
     const auto more = static_cast<std::size_t>(std::count(at_middle.begin(), at_middle.end(), 1));

@@ -60,15 +60,15 @@ double LargestDetail(const CloudDetail& detail) {
 }
 
 /// Returns the distance by which a span ends behind a border.
-double Beyond(const CloudLattice& lattice) {
+double BehindBorder(const CloudLattice& lattice) {
   return 1e-6 * std::min({lattice.voxel_m.x, lattice.voxel_m.y, lattice.voxel_m.z});
 }
 
 /// The interval of altitudes, or of x or y, that a lattice covers; all x and y if it is periodic.
-struct Extent {
+struct AxisExtent {
   double low, high;
 };
-Extent ExtentOf(const CloudLattice& lattice, int axis) {
+AxisExtent AxisExtentOf(const CloudLattice& lattice, int axis) {
   if (lattice.is_periodic && axis < 2) return {-kInfinite, kInfinite};
   return {lattice.origin_m[axis], lattice.origin_m[axis] + lattice.size_m()[axis]};
 }
@@ -78,7 +78,7 @@ double DistanceToLattice(const CloudLattice& lattice, const glm::dvec3& point,
                          const glm::dvec3& direction) {
   double enter = 0.0, exit = kInfinite;
   for (int axis = 0; axis < 3; ++axis) {
-    const Extent extent = ExtentOf(lattice, axis);
+    const AxisExtent extent = AxisExtentOf(lattice, axis);
     if (direction[axis] == 0.0) {
       if (point[axis] < extent.low || point[axis] >= extent.high) return kInfinite;
       continue;
@@ -88,14 +88,14 @@ double DistanceToLattice(const CloudLattice& lattice, const glm::dvec3& point,
     enter = std::max(enter, std::min(a, b));
     exit = std::min(exit, std::max(a, b));
   }
-  return enter < exit ? enter + Beyond(lattice) : kInfinite;
+  return enter < exit ? enter + BehindBorder(lattice) : kInfinite;
 }
 
 /// Returns the distance of a point outside of the lattice from it.
 double OutsideDistance(const CloudLattice& lattice, const glm::dvec3& point) {
   glm::dvec3 away(0.0);
   for (int axis = 0; axis < 3; ++axis) {
-    const Extent extent = ExtentOf(lattice, axis);
+    const AxisExtent extent = AxisExtentOf(lattice, axis);
     away[axis] = std::max({extent.low - point[axis], point[axis] - extent.high, 0.0});
   }
   return glm::length(away);
@@ -460,7 +460,7 @@ CloudSpan CloudField::SpanAhead(const glm::dvec3& point, const glm::dvec3& direc
     const double border = direction[axis] > 0.0 ? block.high[axis] : block.low[axis];
     exit = std::min(exit, border / direction[axis]);
   }
-  return {std::max(exit, 0.0) + Beyond(lattice_), MajorantOf(bricks_->slot[BrickOf(cell)])};
+  return {std::max(exit, 0.0) + BehindBorder(lattice_), MajorantOf(bricks_->slot[BrickOf(cell)])};
 }
 
 double CloudField::MajorantOf(std::int32_t slot) const {

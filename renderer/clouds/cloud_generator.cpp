@@ -14,7 +14,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr double kVoxel_m = 20.0;
+constexpr double kCloudVoxel_m = 20.0;
 
 /// What differs between genera besides the shape.
 struct GenusMatter {
@@ -39,7 +39,7 @@ GenusMatter MatterOfGenus(CloudGenus genus) {
   throw InternalError("a genus of clouds has no matter");
 }
 
-CloudColumn ColumnOf(const CloudOptions& options, const GenusMatter& matter) {
+CloudColumn GenusColumn(const CloudOptions& options, const GenusMatter& matter) {
   if (options.genus == CloudGenus::kCirrus) {
     return IceColumn(1e-6 * options.ice_mg_per_m3, options.crystal_radius_um);
   }
@@ -52,8 +52,9 @@ CloudColumn ColumnOf(const CloudOptions& options, const GenusMatter& matter) {
   return DropletColumn(droplets, options.base_altitude_m + 2.0 * options.depth_m + 200.0);
 }
 
-std::unique_ptr<const CloudShape> ShapeOf(const CloudOptions& options, const CloudLattice& lattice,
-                                          const CloudMatter& matter, double time_s) {
+std::unique_ptr<const CloudShape> GenusShape(const CloudOptions& options,
+                                             const CloudLattice& lattice, const CloudMatter& matter,
+                                             double time_s) {
   switch (options.genus) {
     case CloudGenus::kCumulus:
       return CumulusShape(options, lattice, matter, time_s);
@@ -70,7 +71,7 @@ std::unique_ptr<const CloudShape> ShapeOf(const CloudOptions& options, const Clo
 
 CloudMatter MatterOf(const CloudOptions& options) {
   const GenusMatter genus = MatterOfGenus(options.genus);
-  CloudMatter matter{ColumnOf(options, genus), genus.edge, {}};
+  CloudMatter matter{GenusColumn(options, genus), genus.edge, {}};
   if (genus.detail_m > 0.0) {
     matter.detail = {&ShapeNoise::Billow(), genus.detail_m, 160.0};
   }
@@ -81,10 +82,10 @@ CloudLattice LatticeOf(const CloudOptions& options) {
   const GenusMatter genus = MatterOfGenus(options.genus);
   const double height =
       genus.below_m + options.depth_m * (1.0 + genus.above_m) + (genus.above_m > 0.0 ? 60.0 : 0.0);
-  const int across = static_cast<int>(options.period_m / kVoxel_m);
+  const int across = static_cast<int>(options.period_m / kCloudVoxel_m);
   CloudLattice lattice;
-  lattice.voxels = {across, across, static_cast<int>(std::ceil(height / kVoxel_m))};
-  lattice.voxel_m = glm::dvec3(kVoxel_m);
+  lattice.voxels = {across, across, static_cast<int>(std::ceil(height / kCloudVoxel_m))};
+  lattice.voxel_m = glm::dvec3(kCloudVoxel_m);
   lattice.origin_m = {0.0, 0.0, options.base_altitude_m - genus.below_m};
   return lattice;
 }
@@ -94,7 +95,7 @@ CloudField MakeCloudField(const CloudOptions& options, double time_s) {
   RequireInRange(time_s, 0.0, 1e7, "the time of a field of clouds [s]");
   const CloudLattice lattice = LatticeOf(options);
   const CloudMatter matter = MatterOf(options);
-  const CloudField field(lattice, *ShapeOf(options, lattice, matter, time_s), matter);
+  const CloudField field(lattice, *GenusShape(options, lattice, matter, time_s), matter);
   return field.Moved(time_s * options.wind_m_per_s);
 }
 

@@ -14,18 +14,18 @@
 namespace alpenglow::renderer {
 namespace {
 
-std::int32_t FloorOf(double value) {
+std::int32_t WholePart(double value) {
   const auto truncated = static_cast<std::int32_t>(value);
   return truncated - (value < truncated ? 1 : 0);
 }
 
 /// Returns a number in [0, period).
-std::int32_t Wrapped(std::int32_t number, int period) {
+std::int32_t WrappedCell(std::int32_t number, int period) {
   const std::int32_t rest = number % period;
   return rest < 0 ? rest + period : rest;
 }
 
-double UnitOf(std::uint32_t hash) { return static_cast<double>(hash) / 4294967296.0; }
+double HashFraction(std::uint32_t hash) { return static_cast<double>(hash) / 4294967296.0; }
 
 /// Returns the lowest ten bits as a number in [0, 1).
 double TenBits(std::uint32_t hash) { return (hash & 1023U) / 1024.0; }
@@ -33,19 +33,19 @@ double TenBits(std::uint32_t hash) { return (hash & 1023U) / 1024.0; }
 /// Returns the hash of a lattice point; all axes repeat, or only x and y.
 std::uint32_t PointHash(const std::array<std::int32_t, 3>& point, int period, bool wraps_z,
                         std::uint32_t seed) {
-  return LatticeHash3(Wrapped(point[0], period), Wrapped(point[1], period),
-                      wraps_z ? Wrapped(point[2], period) : point[2], seed);
+  return LatticeHash3(WrappedCell(point[0], period), WrappedCell(point[1], period),
+                      wraps_z ? WrappedCell(point[2], period) : point[2], seed);
 }
 
 double BlendedValues(const glm::dvec3& cells, int period, bool wraps_z, std::uint32_t seed) {
-  const std::array<std::int32_t, 3> low{FloorOf(cells.x), FloorOf(cells.y), FloorOf(cells.z)};
+  const std::array<std::int32_t, 3> low{WholePart(cells.x), WholePart(cells.y), WholePart(cells.z)};
   std::array<double, 3> fade{};
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     fade[a] = shared::NoiseFade(cells[axis] - low[a]);
   }
   const auto value = [&](int x, int y, int z) {
-    return UnitOf(PointHash({low[0] + x, low[1] + y, low[2] + z}, period, wraps_z, seed));
+    return HashFraction(PointHash({low[0] + x, low[1] + y, low[2] + z}, period, wraps_z, seed));
   };
   const auto plane = [&](int z) {
     return shared::NoiseBlend(fade[0], fade[1], value(0, 0, z), value(1, 0, z), value(0, 1, z),
@@ -76,13 +76,16 @@ class BumpLattice {
 
   /// Returns 1 at a point of the lattice, and 0 at distances of a cell and more.
   [[nodiscard]] double At(const glm::dvec3& cells) const {
-    const std::array<std::int32_t, 3> middle{FloorOf(cells.x), FloorOf(cells.y), FloorOf(cells.z)};
+    const std::array<std::int32_t, 3> middle{WholePart(cells.x), WholePart(cells.y),
+                                             WholePart(cells.z)};
     double least = 1.0;
     for (std::int32_t z = middle[2] - 1; z <= middle[2] + 1; ++z) {
       for (std::int32_t y = middle[1] - 1; y <= middle[1] + 1; ++y) {
-        const std::int32_t row = (Wrapped(z, period_) * period_ + Wrapped(y, period_)) * period_;
+        const std::int32_t row =
+            (WrappedCell(z, period_) * period_ + WrappedCell(y, period_)) * period_;
         for (std::int32_t x = middle[0] - 1; x <= middle[0] + 1; ++x) {
-          const glm::dvec3& point = points_[static_cast<std::size_t>(row + Wrapped(x, period_))];
+          const glm::dvec3& point =
+              points_[static_cast<std::size_t>(row + WrappedCell(x, period_))];
           const double dx = x + point.x - cells.x, dy = y + point.y - cells.y;
           const double dz = z + point.z - cells.z;
           least = std::min(least, dx * dx + dy * dy + dz * dz);
@@ -144,15 +147,15 @@ double ValueNoise(const glm::dvec3& cells, int period, std::uint32_t seed) {
 CellDistances DistancesInCells(const glm::dvec2& cells, double time, int period,
                                std::uint32_t seed) {
   constexpr double kJitter = 0.9;  // of a cell
-  const std::int32_t before = FloorOf(time);
+  const std::int32_t before = WholePart(time);
   const double share = shared::NoiseFade(time - before);
   const auto place = [&](std::int32_t x, std::int32_t y, std::uint32_t axis) {
-    const std::int32_t east = Wrapped(x, period), north = Wrapped(y, period);
-    const double from = UnitOf(LatticeHash3(east, north, before, seed + axis));
-    const double to = UnitOf(LatticeHash3(east, north, before + 1, seed + axis));
+    const std::int32_t east = WrappedCell(x, period), north = WrappedCell(y, period);
+    const double from = HashFraction(LatticeHash3(east, north, before, seed + axis));
+    const double to = HashFraction(LatticeHash3(east, north, before + 1, seed + axis));
     return 0.5 + kJitter * (from + share * (to - from) - 0.5);
   };
-  const std::int32_t column = FloorOf(cells.x), row = FloorOf(cells.y);
+  const std::int32_t column = WholePart(cells.x), row = WholePart(cells.y);
   double nearest = 9.0, second = 9.0;  // squares
   for (std::int32_t y = row - 1; y <= row + 1; ++y) {
     for (std::int32_t x = column - 2; x <= column + 1; ++x) {
@@ -195,7 +198,7 @@ double TilingNoise::At(const glm::dvec3& periods) const {
   std::array<float, 3> share{};
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const std::int32_t floor = FloorOf(texels[axis]);
+    const std::int32_t floor = WholePart(texels[axis]);
     share[a] = static_cast<float>(texels[axis] - floor);
     low[a] = static_cast<std::size_t>(floor & (side_ - 1));
     high[a] = static_cast<std::size_t>((floor + 1) & (side_ - 1));

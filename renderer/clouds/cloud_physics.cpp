@@ -13,13 +13,13 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr double kWaterDensity = 1000.0;  // kg m^-3
-constexpr double kIceDensity = 917.0;     // kg m^-3
-constexpr double kGravity = 9.80665;      // m s^-2
-constexpr double kDryGas = 287.05;        // J kg^-1 K^-1
-constexpr double kAirHeat = 1005.0;       // c_p, J kg^-1 K^-1
-constexpr double kVaporRatio = 0.622;     // molar masses of water and dry air
-constexpr double kStep_m = 5.0;
+constexpr double kWaterDensity = 1000.0;      // kg m^-3
+constexpr double kIceDensity = 917.0;         // kg m^-3
+constexpr double kStandardGravity = 9.80665;  // m s^-2
+constexpr double kDryGas = 287.05;            // J kg^-1 K^-1
+constexpr double kAirHeat = 1005.0;           // c_p, J kg^-1 K^-1
+constexpr double kVaporRatio = 0.622;         // molar masses of water and dry air
+constexpr double kLevelStep_m = 5.0;
 
 /// Returns the latent heat of vaporisation [J/kg] (Bolton 1980, equation 2).
 double LatentHeat(double temperature_K) { return 2.501e6 - 2370.0 * (temperature_K - 273.15); }
@@ -50,7 +50,7 @@ BaseAir StandardBaseAir(double altitude_m) {
   constexpr double kLapse = 6.5e-3;  // K/m
   const double temperature = 288.15 - kLapse * altitude_m;
   return {temperature,
-          101325.0 * PortablePower(temperature / 288.15, kGravity / (kDryGas * kLapse))};
+          101325.0 * PortablePower(temperature / 288.15, kStandardGravity / (kDryGas * kLapse))};
 }
 
 double CondensationRate_kg_per_m4(const BaseAir& air) {
@@ -59,9 +59,9 @@ double CondensationRate_kg_per_m4(const BaseAir& air) {
   const double heat = LatentHeat(air.temperature_K);
   const double ratio = SaturationRatio(air);
   const double gas = kDryGas * air.temperature_K;
-  const double dry = kGravity / kAirHeat;
+  const double dry = kStandardGravity / kAirHeat;
   const double saturated =
-      kGravity * (1.0 + heat * ratio / gas) /
+      kStandardGravity * (1.0 + heat * ratio / gas) /
       (kAirHeat + heat * heat * ratio * kVaporRatio / (gas * air.temperature_K));
   return air.pressure_Pa / gas * kAirHeat / heat * (dry - saturated);
 }
@@ -110,11 +110,12 @@ double CloudColumn::LargestBetween_per_m(double low_m, double high_m) const {
 
 CloudColumn DropletColumn(const DropletOptions& options, double top_m) {
   std::vector<CloudLevel> levels;
-  const int count = 2 + std::max(0, static_cast<int>((top_m - options.base_altitude_m) / kStep_m));
+  const int count =
+      2 + std::max(0, static_cast<int>((top_m - options.base_altitude_m) / kLevelStep_m));
   for (int i = 0; i < count + 1; ++i) {
-    levels.push_back(DropletLevel(options, options.base_altitude_m + kStep_m * i));
+    levels.push_back(DropletLevel(options, options.base_altitude_m + kLevelStep_m * i));
   }
-  return {options.base_altitude_m, kStep_m, std::move(levels)};
+  return {options.base_altitude_m, kLevelStep_m, std::move(levels)};
 }
 
 CloudColumn IceColumn(double ice_kg_per_m3, double radius_um) {

@@ -161,7 +161,7 @@ CumulusCloud DrawnCloud(const CloudOptions& options, int number, double time_s) 
 }
 
 /// Cells of the ground grid under a cloud, relative to that of its middle.
-std::vector<std::pair<int, int>> Footprint(const CumulusCloud& cloud, double scale) {
+std::vector<std::pair<int, int>> FootprintOf(const CumulusCloud& cloud, double scale) {
   std::vector<std::pair<int, int>> cells;
   for (const CloudSphere& sphere : cloud.spheres) {
     const glm::dvec2 middle = scale / kGrid_m * glm::dvec2(sphere.centre_m);
@@ -218,9 +218,10 @@ class GroundGrid {
 };
 
 /// Places clouds on the ground, the largest first.
-class Placing {
+class CloudPlacing {
  public:
-  explicit Placing(const CloudOptions& options) : options_(options), ground_(options.period_m) {}
+  explicit CloudPlacing(const CloudOptions& options)
+      : options_(options), ground_(options.period_m) {}
 
   /// Returns the cover of the footprints.
   [[nodiscard]] double PlaceAll(std::vector<CumulusCloud>& clouds) {
@@ -239,8 +240,8 @@ class Placing {
 
   void Place(CumulusCloud& cloud, std::uint32_t number) {
     // On the average over its life, a cloud covers this share of its full footprint.
-    const auto cells = Footprint(cloud, std::sqrt(kMeanSquareGrowth));
-    const auto guarded = Footprint(cloud, std::sqrt(kMeanSquareGrowth) + 120.0 / cloud.size_m);
+    const auto cells = FootprintOf(cloud, std::sqrt(kMeanSquareGrowth));
+    const auto guarded = FootprintOf(cloud, std::sqrt(kMeanSquareGrowth) + 120.0 / cloud.size_m);
     CountedRandom random(options_.seed * 7919U + 19U, number);
     int best_x = 0, best_y = 0;
     int least = static_cast<int>(guarded.size()) + 1;
@@ -261,7 +262,7 @@ class Placing {
   /// Returns how likely a place is, relative to the best ones: clouds come in clusters.
   [[nodiscard]] double Likelihood(const glm::dvec2& place) const {
     const GroundNoise clusters{5120.0, 2, 0.6, 1e9, 3U + 1000U * options_.seed};
-    return SmoothStep(-1.1, 0.5, clusters.At(place, 0.0, options_.period_m));
+    return SmoothRamp(-1.1, 0.5, clusters.At(place, 0.0, options_.period_m));
   }
 
   const CloudOptions& options_;
@@ -501,9 +502,9 @@ std::vector<CumulusCloud> CumulusPopulation(const CloudOptions& options, double 
   for (int round = 0; round < kRounds; ++round) {
     while (area < wanted) {
       clouds.push_back(DrawnCloud(options, static_cast<int>(clouds.size()), time_s));
-      area += kMeanSquareGrowth * static_cast<double>(Footprint(clouds.back(), 1.0).size());
+      area += kMeanSquareGrowth * static_cast<double>(FootprintOf(clouds.back(), 1.0).size());
     }
-    const double cover = Placing(options).PlaceAll(clouds);
+    const double cover = CloudPlacing(options).PlaceAll(clouds);
     if (cover >= 0.99 * footprints) break;
     wanted *= std::min(2.0, footprints / cover);
   }

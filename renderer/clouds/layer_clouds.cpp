@@ -19,7 +19,7 @@ constexpr double kSteepness = 0.8;  // of F by z, because surfaces are not level
 constexpr double kMapSpacing_m = 40.0;
 
 /// Lengths of a layer.
-struct LayerForm {
+struct DeckForm {
   double thickness_m;    // H
   double exponent;       // p
   double outer_slope_m;  // of h for u < 0
@@ -29,7 +29,7 @@ struct LayerForm {
   double rim_rise_m;     // of the base where the layer ends
 };
 
-LayerForm FormOf(const CloudOptions& options) {
+DeckForm DeckFormOf(const CloudOptions& options) {
   const double depth = options.depth_m;
   if (options.genus == CloudGenus::kStratocumulus) {
     return {0.9 * depth, 0.7, 0.9 * depth, 0.063 * depth, 0.05 * depth, 0.05 * depth, 0.14 * depth};
@@ -38,15 +38,15 @@ LayerForm FormOf(const CloudOptions& options) {
 }
 
 /// Returns h in units of H.
-double RelativeThickness(double u, const LayerForm& form) {
+double RelativeThickness(double u, const DeckForm& form) {
   if (u <= 0.0) return u * form.outer_slope_m / form.thickness_m;
   return PortablePower(std::min(u, 1.3), form.exponent);
 }
 
 /// The map of a genus over the ground.
-class LayerMap {
+class ThicknessMap {
  public:
-  LayerMap(const CloudOptions& options, double time_s) : options_(options), time_s_(time_s) {
+  ThicknessMap(const CloudOptions& options, double time_s) : options_(options), time_s_(time_s) {
     const glm::dvec2 along = WindDirection(options);
     // The rows repeat with the field if a whole number of waves fits along x and along y.
     waves_ = {std::round(along.x * options.period_m / kRow_m),
@@ -83,8 +83,8 @@ class LayerMap {
     const glm::dvec2 bent = place + 600.0 * Offset({2560.0, 4, 0.55, 5000.0, 1}, place);
     const CellDistances large = Cells(2050.0, 7000.0, 3, bent);
     const CellDistances small = Cells(760.0, 2500.0, 4, bent);
-    return 1.1 * SmoothStep(0.0, 0.55, large.second - large.nearest) +
-           0.5 * SmoothStep(0.0, 0.5, small.second - small.nearest) +
+    return 1.1 * SmoothRamp(0.0, 0.55, large.second - large.nearest) +
+           0.5 * SmoothRamp(0.0, 0.5, small.second - small.nearest) +
            0.6 * Noise({5120.0, 7, 0.56, 9000.0, 5}, place);
   }
 
@@ -93,7 +93,7 @@ class LayerMap {
                             900.0 * Offset({5120.0, 1, 0.5, 9000.0, 6}, place);
     const CellDistances cells = Cells(400.0, 1800.0, 3, bent);
     const double rows = PortableCircle(glm::dot(waves_, bent) / options_.period_m).x;
-    const double rows_here = SmoothStep(-0.5, 0.4, Noise({6827.0, 2, 0.5, 9000.0, 9}, place));
+    const double rows_here = SmoothRamp(-0.5, 0.4, Noise({6827.0, 2, 0.5, 9000.0, 9}, place));
     return 1.0 - 1.7 * cells.nearest * cells.nearest + 0.45 * rows_here * rows +
            1.1 * Noise({6827.0, 5, 0.55, 9000.0, 5}, place) +
            0.15 * Noise({320.0, 2, 0.5, 900.0, 8}, place);
@@ -104,15 +104,17 @@ class LayerMap {
   glm::dvec2 waves_;
 };
 
-class LayerShape final : public CloudShape {
+class DeckShape final : public CloudShape {
  public:
-  LayerShape(const CloudOptions& options, const CloudLattice& lattice, const CloudMatter& matter,
-             double time_s)
-      : form_(FormOf(options)),
+  DeckShape(const CloudOptions& options, const CloudLattice& lattice, const CloudMatter& matter,
+            double time_s)
+      : form_(DeckFormOf(options)),
         base_m_(options.base_altitude_m),
         rise_m_(time_s * 0.5),
         map_(static_cast<int>(options.period_m / kMapSpacing_m), options.period_m,
-             [map = LayerMap(options, time_s)](const glm::dvec2& place) { return map.At(place); }),
+             [map = ThicknessMap(options, time_s)](const glm::dvec2& place) {
+               return map.At(place);
+             }),
         full_(map_.Quantile(0.97)) {
     const double least = map_.Quantile(0.0), most = map_.Quantile(1.0);
     const double margin = 0.5 * (most - least);
@@ -159,7 +161,7 @@ class LayerShape final : public CloudShape {
                     kSteepness * (point.z - base) + 0.5 * bumps);
   }
 
-  LayerForm form_;
+  DeckForm form_;
   double base_m_, rise_m_;
   PeriodicMap map_;
   double full_;  // m_97
@@ -171,7 +173,7 @@ class LayerShape final : public CloudShape {
 std::unique_ptr<const CloudShape> LayerCloudShape(const CloudOptions& options,
                                                   const CloudLattice& lattice,
                                                   const CloudMatter& matter, double time_s) {
-  return std::make_unique<LayerShape>(options, lattice, matter, time_s);
+  return std::make_unique<DeckShape>(options, lattice, matter, time_s);
 }
 
 }  // namespace alpenglow::renderer

@@ -69,7 +69,7 @@ namespace alpenglow::renderer {
 }
 
 /// Returns 0 up to `low`, 1 from `high` on, and 3 t^2 - 2 t^3 between them; low < high.
-[[nodiscard]] constexpr double SmoothStep(double low, double high, double x) {
+[[nodiscard]] constexpr double SmoothRamp(double low, double high, double x) {
   const double t = x <= low ? 0.0 : x >= high ? 1.0 : (x - low) / (high - low);
   return t * t * (3.0 - 2.0 * t);
 }
