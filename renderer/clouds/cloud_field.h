@@ -148,7 +148,7 @@ class CloudField {
   [[nodiscard]] CloudField Moved(const glm::dvec2& offset_m) const;
 
   /// Returns the depth under the surface, in [kLeastCloudDepth_m, kMostCloudDepth_m] [m]. Rounding
-  /// to bytes moves it by 0.5 m at most.
+  /// to bytes moves it by 0.5 m at most. Where it is below -kCloudMargin_m it is not continuous.
   [[nodiscard]] double SignedDepth_m(const glm::dvec3& point) const;
   /// Returns the extinction of the voxels [1/m].
   [[nodiscard]] double Extinction_per_m(const glm::dvec3& point) const;
