@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kLeastSize_m = 120.0, kLargestSize_m = 3000.0;
 constexpr double kBreak_m = 1300.0, kBreakWidth_m = 900.0;
-constexpr double kSizeExponent = -1.7;
+constexpr double kSizeExponent = -1.6;
 constexpr double kGrid_m = 40.0;        // of places and of the union of spheres
 constexpr double kUnion_m = 14.0;       // s
 constexpr double kMostOffset_m = 30.0;  // for the cover
@@ -79,7 +79,7 @@ std::vector<PlumeFoot> PlumeFeet(double size_m, CountedRandom& random) {
   constexpr int kTries = 12;
   const glm::dvec2 axis = PortableCircle(random.Uniform());
   const double stretch = random.Between(0.75, 1.35);
-  const double count = 3.0 + size_m / 55.0 * random.Between(0.7, 1.3);
+  const double count = 3.0 + size_m / 60.0 * random.Between(0.7, 1.3);
   const double mean_radius = 0.33 * size_m / std::sqrt(count);
   std::vector<PlumeFoot> feet{{glm::dvec2(0.0), mean_radius * 1.15}};
   while (static_cast<double>(feet.size()) < count) {
@@ -87,7 +87,7 @@ std::vector<PlumeFoot> PlumeFeet(double size_m, CountedRandom& random) {
     for (int attempt = 0; attempt < kTries; ++attempt) {
       const auto beside =
           static_cast<std::size_t>(random.Uniform() * static_cast<double>(feet.size()));
-      const double away = random.Between(1.0, 1.5) * (feet[beside].radius_m + foot.radius_m);
+      const double away = random.Between(0.95, 1.3) * (feet[beside].radius_m + foot.radius_m);
       foot.place_m = feet[beside].place_m + away * PortableCircle(random.Uniform());
       const glm::dvec2 in_ellipse(glm::dot(foot.place_m, axis) / stretch,
                                   (foot.place_m.y * axis.x - foot.place_m.x * axis.y) * stretch);
@@ -142,7 +142,7 @@ constexpr double kMeanSquareGrowth = 0.3 + 0.7 * 8.0 / 15.0;
 
 /// Returns the cover of footprints that gives a cover of clouds: noise cuts more away at the rims of
 /// clouds than it adds. The offset of the depth makes the cover exact.
-double FootprintCover(double cover) { return std::min(0.99, cover * (1.06 + 0.3 * cover)); }
+double FootprintCover(double cover) { return std::min(0.99, cover * (1.02 + 0.34 * cover)); }
 
 /// Returns a cloud of the sequence, without its place.
 CumulusCloud DrawnCloud(const CloudOptions& options, int number, double time_s) {

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Cumulus: a population of clouds, each a heap of spheres with billow noise on it.
 //
-// Sizes: the number of clouds per size is ~ l^-1.7 from 120 m to a scale break of 1.3 km (Neggers,
-// Jonker and Siebesma 2003, J. Atmos. Sci. 60, 1060), and falls off exponentially beyond it. All
-// sizes are drawn before any cloud is placed, and every cloud is placed, the largest first: the sizes
-// keep their distribution whatever the cover is. Clouds stand where they touch no other if there is
-// such a place, and closer together where noise of 5 km is high.
+// Sizes: the number of clouds per size is ~ l^-1.7 up to a scale break near 1 km, l^2 their area
+// seen from above (Neggers, Jonker and Siebesma 2003, J. Atmos. Sci. 60, 1060). Sizes across are
+// drawn with an exponent of -1.6 from 120 m on, because large clouds fill less of their extent, and
+// fall off exponentially from 1.3 km on. All sizes are drawn before any cloud is placed, and every
+// cloud is placed, the largest first: the sizes keep their distribution whatever the cover is. Clouds
+// stand where they touch no other if there is such a place, and closer together where noise of 5 km
+// is high.
 //
-// One cloud: three to a dozen plumes within an elliptic base, each a chain of spheres; lobes on the
-// upper and outer side of every sphere, and lobes on the lobes. Their union is
+// One cloud: plumes side by side on a base, five for a cloud of 120 m and 20 for one of 1 km, each a
+// chain of spheres; lobes on the upper and outer side of every sphere, and lobes on the lobes. Their
+// union is
 //
 //   F_0 = s ln(sum_i exp((r_i - |p - c_i|) / s)),   s = 14 m, on a grid of 40 m
 //
-// Billow noise displaces F_0 by more at the top than at the base, and the base is cut level.
+// Billow noise displaces F_0 by more at the top than at the base, and by less on small clouds; the
+// base is cut level. With the plumes it gives outlines the perimeter dimension 1.35 (Lovejoy 1982,
+// Science 216, 185).
 //
 // A cloud grows, stays and decays within 20 minutes times the root of its size over 500 m, and then
 // another one grows at the same place.

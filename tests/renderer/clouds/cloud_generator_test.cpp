@@ -160,8 +160,8 @@ TEST(CloudGenerator, EmptySkyHasNoCloud) {
 }
 
 TEST(Cumulus, SizesKeepTheirDistribution) {
-  // Neggers et al. (2003): -1.7 below a break near 1 km. Exponents of 300 clouds have a standard
-  // error of 0.08 (maximum likelihood, from 160 m to 1.28 km); 0.25 is three of them for one field.
+  // Neggers et al. (2003): -1.7 below a break near 1 km. Exponents of 400 clouds have a standard
+  // error of 0.08 (maximum likelihood, from 160 m to 800 m); 0.25 is three of them for one field.
   // Under the sanitizers a quarter of the area has half the precision.
   for (std::uint32_t seed = 111; seed < tests::ScaledDown(113U, 112U); ++seed) {
     CloudOptions options = DefaultCloudOptions(CloudGenus::kCumulus);
@@ -169,7 +169,7 @@ TEST(Cumulus, SizesKeepTheirDistribution) {
     options.seed = seed;
     const OpticalDepthMap map = MapOf(MakeCloudField(options));
     const auto clouds = tests::CountClouds(map, CoveredOpticalDepth(options.genus));
-    const tests::SizeExponent sizes = tests::ExponentOfSizes(clouds, 160.0, 1280.0);
+    const tests::SizeExponent sizes = tests::ExponentOfSizes(clouds, 160.0, 800.0);
     EXPECT_NEAR(sizes.exponent, -1.7, tests::ScaledDown(0.25, 0.5)) << sizes.clouds << " clouds";
     // Lovejoy (1982): 1.35. A line through 350 clouds has a standard error of 0.015.
     EXPECT_NEAR(tests::PerimeterDimension(clouds, map.spacing_m), 1.35,
