@@ -147,18 +147,20 @@ class FibreIndex {
 
   /// Returns the greatest r - d of the fibres that pass the cell of a point.
   [[nodiscard]] double DepthAt(const glm::dvec3& point) const {
-    std::array<int, 3> cell = CellOf(point);
+    const std::array<int, 3> cell = CellOf(point);
     if (cell[2] < 0 || cell[2] >= count_[2]) return kLeastCloudDepth_m;
+    const glm::dvec3 in_period = point - PeriodsAway(cell);
     double depth = kLeastCloudDepth_m;
-    const glm::dvec3 period = cell_m_ * glm::dvec3(count_[0], count_[1], 0.0);
     for (const FibrePart& part : cells_[Index(cell)]) {
-      glm::dvec3 from = point - part.begin;
-      from.x -= period.x * std::round(from.x / period.x);
-      from.y -= period.y * std::round(from.y / period.y);
+      const glm::dvec3 from = in_period - part.begin;
       const double share =
           std::clamp(glm::dot(from, part.along) * part.per_square_length, 0.0, 1.0);
-      const double distance = glm::length(from - share * part.along);
-      depth = std::max(depth, part.begin_radius + share * part.radius_change - distance);
+      const glm::dvec3 away = from - share * part.along;
+      const double square = glm::dot(away, away);
+      const double radius = part.begin_radius + share * part.radius_change;
+      // The root is only taken of distances that could be the least.
+      const double reach = radius - depth;
+      if (reach > 0.0 && square < reach * reach) depth = radius - std::sqrt(square);
     }
     return depth;
   }
@@ -178,6 +180,15 @@ class FibreIndex {
            wrapped(0);
   }
 
+  /// Returns the offset of a cell from the cell of the first period that stands for it.
+  [[nodiscard]] glm::dvec3 PeriodsAway(const std::array<int, 3>& cell) const {
+    const auto periods = [&](std::size_t axis) {
+      const int count = count_[axis];
+      return cell[axis] < 0 ? -((count - 1 - cell[axis]) / count) : cell[axis] / count;
+    };
+    return cell_m_ * glm::dvec3(periods(0) * count_[0], periods(1) * count_[1], 0.0);
+  }
+
   void Add(const FibreNode& from, const FibreNode& to) {
     const double radius = std::max(from.radius_m, to.radius_m);
     if (radius < 1.0) return;
@@ -189,7 +200,10 @@ class FibreIndex {
     const std::array<int, 3> high = CellOf(glm::max(from.place_m, to.place_m) + reach);
     for (int z = std::max(low[2], 0); z <= std::min(high[2], count_[2] - 1); ++z) {
       for (int y = low[1]; y <= high[1]; ++y) {
-        for (int x = low[0]; x <= high[0]; ++x) cells_[Index({x, y, z})].push_back(part);
+        for (int x = low[0]; x <= high[0]; ++x) {
+          cells_[Index({x, y, z})].push_back(part);
+          cells_[Index({x, y, z})].back().begin -= PeriodsAway({x, y, z});
+        }
       }
     }
   }
