@@ -145,12 +145,13 @@ class FibreIndex {
     return cell[2] < 0 || cell[2] >= count_[2] || cells_[Index(cell)].empty();
   }
 
-  /// Returns the greatest r - d of the fibres that pass the cell of a point.
+  /// Returns the greatest r - d of the fibres that pass the cell of a point, and at least the depth
+  /// that no offset raises above the margin.
   [[nodiscard]] double DepthAt(const glm::dvec3& point) const {
     const std::array<int, 3> cell = CellOf(point);
     if (cell[2] < 0 || cell[2] >= count_[2]) return kLeastCloudDepth_m;
     const glm::dvec3 in_period = point - PeriodsAway(cell);
-    double depth = kLeastCloudDepth_m;
+    double depth = -kCloudMargin_m - kSlack_m;
     for (const FibrePart& part : cells_[Index(cell)]) {
       const glm::dvec3 from = in_period - part.begin;
       const double share =
@@ -158,7 +159,7 @@ class FibreIndex {
       const glm::dvec3 away = from - share * part.along;
       const double square = glm::dot(away, away);
       const double radius = part.begin_radius + share * part.radius_change;
-      // The root is only taken of distances that could be the least.
+      // Roots are only taken of distances that can give a greater depth.
       const double reach = radius - depth;
       if (reach > 0.0 && square < reach * reach) depth = radius - std::sqrt(square);
     }

@@ -9,10 +9,9 @@
 //   sigma    = Q_ext 3 w / (4 rho r_eff),  Q_ext = 2                 Stephens (1978), J. Atmos. Sci.
 //              35, 2123
 //
-// Hence sigma ~ (z - z_base)^(2/3) N^(1/3). Q_ext = 2 is the limit of large spheres; at 550 nm the
-// error is below 6 % from r_eff = 5 um on. Ice has the same relation with the density of ice, if
-// r_eff is three quarters of volume over mean projected area (Foot 1988, Quart. J. R. Met. Soc. 114,
-// 145).
+// Hence sigma ~ (z - z_base)^(2/3) N^(1/3). Q_ext = 2 is the limit of large spheres. Ice has
+// the same relation with the density of ice, if r_eff is three quarters of volume over mean projected
+// area (Foot 1988, Quart. J. R. Met. Soc. 114, 145).
 #pragma once
 
 #include <cstddef>

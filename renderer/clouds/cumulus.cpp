@@ -442,8 +442,6 @@ class HeapShape final : public CloudShape {
            spheres_.LargestIn(low, high) + kMostRaised_m > -kCloudMargin_m;
   }
 
-  [[nodiscard]] double offset_m() const { return offset_m_; }
-
  private:
   static constexpr double kLarge_m = 70.0, kSmall_m = 60.0, kBend_m = 22.0, kSmooth_m = 10.0;
   static constexpr double kDeepestBase_m = 120.0;

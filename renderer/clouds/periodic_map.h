@@ -20,7 +20,7 @@ struct GroundNoise {
   double change_s = 3000.0;  // time in which the first octave becomes another
   std::uint32_t seed = 1;
 
-  /// Returns the noise, of standard deviation about 0.34 for the first octave.
+  /// Returns the noise, of standard deviation 0.40 for the first octave.
   [[nodiscard]] double At(const glm::dvec2& point_m, double time_s, double period_m) const;
 };
 

@@ -85,6 +85,23 @@ TEST(CloudNoise, ValueNoiseRepeatsOnTheGroundOnly) {
   EXPECT_NE(ValueNoise({0.5, 0.5, 0.5}, 6, 5U), ValueNoise({0.5, 0.5, 6.5}, 6, 5U));
 }
 
+TEST(CloudNoise, ValueNoiseHasItsStandardDeviation) {
+  // Values of variance 1/3 are blended with weights f and 1 - f along three axes. The mean of
+  // f^2 + (1 - f)^2 over Perlin's fade is 362/462, so the variance is (362/462)^3 / 3.
+  double sum = 0.0, squares = 0.0;
+  constexpr int kCount = 200000;
+  for (int i = 0; i < kCount; ++i) {
+    const double value = ValueNoise({0.618034 * i, 0.754878 * i, 0.56984 * i}, 1000, 5U);
+    sum += value;
+    squares += value * value;
+  }
+  const double mean = sum / kCount;
+  // About 1e5 independent values: standard errors of 0.0013 and 0.001.
+  EXPECT_NEAR(mean, 0.0, 0.006);
+  EXPECT_NEAR(std::sqrt(squares / kCount - mean * mean),
+              std::sqrt(std::pow(362.0 / 462.0, 3) / 3.0), 0.005);
+}
+
 TEST(CloudNoise, CellDistancesRepeatAndAreOrdered) {
   for (int i = 0; i < 300; ++i) {
     const glm::dvec2 at(0.37 * i, 0.213 * i);
