@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/clouds/forward_peak.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+// Angles are uniform in their root, which makes them dense in the peak; depths in their logarithm.
+constexpr std::size_t kAngles = 512, kDepths = 64;
+constexpr double kShallowest = 1e-3;
+// Degree of the series. Lobes with g = 0.95 have chi_600 = 4e-14; droplets have wider tails of the
+// series, and their peak within a third of a degree is rounded off.
+constexpr int kSeriesDegree = 600;
+
+double DepthAt(std::size_t i) {
+  return kShallowest *
+         std::pow(ForwardPeak::kDeepest / kShallowest, static_cast<double>(i) / (kDepths - 1));
+}
+
+double AngleAt(std::size_t i) { return kPi * std::pow(static_cast<double>(i) / (kAngles - 1), 2); }
+
+/// The factors of w_l P_l that are added to p, for all degrees and depths.
+struct Factors {
+  std::vector<double> effective, broadened;  // [depth][degree]
+};
+
+Factors FactorsOf(const std::vector<double>& chi, int degree, double fraction) {
+  Factors factors;
+  for (std::size_t i = 0; i < kDepths; ++i) {
+    const double x = DepthAt(i);
+    for (std::size_t l = 0; l < chi.size(); ++l) {
+      const double a = static_cast<int>(l) <= degree ? 1.0 : chi[l] / fraction;
+      // (e^(-x (1 - a)) - e^(-x)) / x = e^(-x (1 - a)) (1 - e^(-x a)) / x, without cancellation.
+      const double orders = -std::exp(-x * (1.0 - a)) * std::expm1(-x * a) / x;
+      factors.effective.push_back(fraction * (orders - a));
+      factors.broadened.push_back(chi[l] * std::expm1(-x * (1.0 - a)));
+    }
+  }
+  return factors;
+}
+
+}  // namespace
+
+ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
+    : effective_(kAngles * kDepths), broadened_(kAngles * kDepths) {
+  if (degree < 0 || degree > 16) {
+    throw InputError(
+        fmt::format("moments of light in clouds of degree {}; it must be 0 to 16", degree));
+  }
+  const std::vector<double> chi = LegendreCoefficients(phase, kSeriesDegree);
+  fraction_ = chi[static_cast<std::size_t>(degree) + 1];
+  if (!(fraction_ > 0.0 && fraction_ < 1.0)) {
+    throw InputError(
+        fmt::format("a phase function of clouds has no forward peak beyond degree {}", degree));
+  }
+  const Factors factors = FactorsOf(chi, degree, fraction_);
+  tbb::parallel_for(std::size_t{0}, kAngles, [&](std::size_t angle) {
+    const double cosine = std::cos(AngleAt(angle));
+    const std::vector<double> series = LegendreSeries(kSeriesDegree, cosine);
+    const double value = Phase(phase, cosine);
+    for (std::size_t depth = 0; depth < kDepths; ++depth) {
+      double effective = value, broadened = value;
+      for (std::size_t l = 0; l < chi.size(); ++l) {
+        effective += factors.effective[depth * chi.size() + l] * series[l];
+        broadened += factors.broadened[depth * chi.size() + l] * series[l];
+      }
+      effective_[angle * kDepths + depth] = static_cast<float>(effective / (1.0 - fraction_));
+      broadened_[angle * kDepths + depth] = static_cast<float>(broadened);
+    }
+  });
+}
+
+double ForwardPeak::At(const std::vector<float>& table, double cos_scattering, double depth) {
+  const double angle = std::acos(std::clamp(cos_scattering, -1.0, 1.0));
+  const double u = std::sqrt(angle / kPi) * (kAngles - 1);
+  const double per_depth = (kDepths - 1) / std::log(kDeepest / kShallowest);
+  const double v = per_depth * std::log(std::clamp(depth, kShallowest, kDeepest) / kShallowest);
+  const auto i = std::min(static_cast<std::size_t>(u), kAngles - 2);
+  const auto j = std::min(static_cast<std::size_t>(v), kDepths - 2);
+  const double across = u - static_cast<double>(i), along = v - static_cast<double>(j);
+  const float* low = &table[i * kDepths + j];
+  const float* high = low + kDepths;
+  return std::lerp(std::lerp(static_cast<double>(low[0]), static_cast<double>(low[1]), along),
+                   std::lerp(static_cast<double>(high[0]), static_cast<double>(high[1]), along),
+                   across);
+}
+
+}  // namespace alpenglow::renderer
