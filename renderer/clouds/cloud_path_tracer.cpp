@@ -20,7 +20,7 @@ namespace {
 using atmosphere::reference::kPathsPerBatch;
 using PathRandom = CloudPathTracer::PathRandom;
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded_m = std::numeric_limits<double>::infinity();
 // Paths with less weight than this survive with probability 1/2.
 constexpr double kLeastWeight = 0.25;
 // Fluxes have this number of groups of batches, whose scatter is their standard error. A wave of
@@ -29,7 +29,7 @@ constexpr std::size_t kFluxGroups = 32, kWave = 8;
 constexpr std::size_t kMostColumns = std::size_t{1} << 18U;
 
 /// Returns the direction at an angle from an axis.
-glm::dvec3 Turned(const glm::dvec3& axis, double cosine, double azimuth_rad) {
+glm::dvec3 TurnedFrom(const glm::dvec3& axis, double cosine, double azimuth_rad) {
   const glm::dvec3 other = std::abs(axis.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
   const glm::dvec3 side = glm::normalize(glm::cross(axis, other));
   const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
@@ -37,15 +37,16 @@ glm::dvec3 Turned(const glm::dvec3& axis, double cosine, double azimuth_rad) {
                                                 std::sin(azimuth_rad) * glm::cross(axis, side)));
 }
 
-glm::dvec3 Scattered(const glm::dvec3& direction, const PhaseFunction& phase, PathRandom& random) {
+glm::dvec3 ScatteredFrom(const glm::dvec3& direction, const PhaseFunction& phase,
+                         PathRandom& random) {
   const double cosine = SampleCosine(phase, random.Next());
-  return Turned(direction, cosine, 2.0 * kPi * random.Next());
+  return TurnedFrom(direction, cosine, 2.0 * kPi * random.Next());
 }
 
 /// Returns a direction with density cos / pi around the vertical; `up` is 1 or -1.
 glm::dvec3 LambertianDirection(double up, PathRandom& random) {
   const double cosine = std::sqrt(1.0 - random.Next());
-  return Turned({0.0, 0.0, up}, cosine, 2.0 * kPi * random.Next());
+  return TurnedFrom({0.0, 0.0, up}, cosine, 2.0 * kPi * random.Next());
 }
 
 /// Returns the weight of a path after Russian roulette; 0 if the path ends.
@@ -70,7 +71,8 @@ void RequireUnit(const glm::dvec3& direction, const char* name) {
   }
 }
 
-std::size_t RequireValid(const CloudPathOptions& options) {
+/// Returns the number of batches. Throws InputError for options that are not valid.
+std::size_t BatchesOf(const CloudPathOptions& options) {
   if (options.paths < 1) throw InputError("paths through clouds: there must be at least one");
   if (options.max_order < 1) {
     throw InputError(fmt::format("max_order is {}; it must be 1 or more", options.max_order));
@@ -105,7 +107,7 @@ CloudPathTracer::CloudPathTracer(const CloudField& field, CloudScatterers scatte
 
 double CloudPathTracer::GroundDistance_m(const CloudRay& ray) const {
   const double height_m = ray.origin.z - surroundings_.ground_altitude_m;
-  return ray.direction.z < 0.0 && height_m >= 0.0 ? -height_m / ray.direction.z : kInfinite;
+  return ray.direction.z < 0.0 && height_m >= 0.0 ? -height_m / ray.direction.z : kUnbounded_m;
 }
 
 const PhaseFunction& CloudPathTracer::PhaseAt(const glm::dvec3& point, PathRandom& random) const {
@@ -114,12 +116,12 @@ const PhaseFunction& CloudPathTracer::PhaseAt(const glm::dvec3& point, PathRando
 }
 
 double CloudPathTracer::SunTransmittance(const glm::dvec3& point, PathRandom& random) const {
-  return tracker_.Transmittance({point, surroundings_.to_sun}, kInfinite, random);
+  return tracker_.Transmittance({point, surroundings_.to_sun}, kUnbounded_m, random);
 }
 
 double CloudPathTracer::SideRay(const Walker& walker, const PhaseFunction& phase,
                                 PathRandom& random) const {
-  CloudRay side{walker.ray.origin, Scattered(surroundings_.to_sun, phase, random)};
+  CloudRay side{walker.ray.origin, ScatteredFrom(surroundings_.to_sun, phase, random)};
   const std::optional<double> distance_m = tracker_.Collision(side, GroundDistance_m(side), random);
   if (!distance_m) return 0.0;
   side.origin = side.At(*distance_m);
@@ -137,7 +139,7 @@ void CloudPathTracer::Collide(Walker& walker, PathRandom& random, int max_order)
                       SunTransmittance(walker.ray.origin, random);
   if (++walker.order >= max_order) return;
   walker.light.sun += walker.weight * SideRay(walker, phase, random);
-  const glm::dvec3 next = Scattered(walker.ray.direction, phase, random);
+  const glm::dvec3 next = ScatteredFrom(walker.ray.direction, phase, random);
   const double main = Phase(phase, glm::dot(walker.ray.direction, next));
   walker.share = main / (main + Phase(phase, glm::dot(next, surroundings_.to_sun)));
   walker.ray.direction = next;
@@ -162,7 +164,7 @@ CloudPathLight CloudPathTracer::OnePath(const CloudRay& ray, PathRandom& random,
   while (walker.weight > 0.0 && walker.order < max_order) {
     const double ground_m = GroundDistance_m(walker.ray);
     const std::optional<double> distance_m = tracker_.Collision(walker.ray, ground_m, random);
-    if (!distance_m && ground_m == kInfinite) {
+    if (!distance_m && ground_m == kUnbounded_m) {
       if (walker.ray.direction.z >= 0.0) walker.light.sky += walker.weight;
       break;
     }
@@ -179,7 +181,7 @@ CloudPathLight CloudPathTracer::OnePath(const CloudRay& ray, PathRandom& random,
 
 CloudRadiance CloudPathTracer::Radiance(const CloudRay& ray,
                                         const CloudPathOptions& options) const {
-  const std::size_t batches = RequireValid(options);
+  const std::size_t batches = BatchesOf(options);
   RequireUnit(ray.direction, "the direction of a ray through clouds");
   std::vector<double> sun(batches), sky(batches), ground(batches), transmittance(batches);
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
@@ -209,12 +211,12 @@ enum class FluxKind { kUpAtTop, kDirectAtBase, kDownAtBase, kUpAtBase, kAbsorbed
 constexpr std::size_t kFluxKinds = 5;
 
 /// A rectangle of the plane through the top of a field, where photons start.
-struct Rectangle {
+struct LaunchArea {
   glm::dvec2 low, size;
 };
 
 /// Returns a period, or the part of the plane from which a beam reaches the lattice of an open field.
-Rectangle LaunchRectangle(const CloudField& field, const glm::dvec3& to_sun) {
+LaunchArea LaunchAreaOf(const CloudField& field, const glm::dvec3& to_sun) {
   const glm::dvec2 low(field.lattice().origin_m), size(field.lattice().size_m());
   if (field.lattice().is_periodic) return {low, size};
   const double depth_m = field.top_altitude_m() - field.base_altitude_m();
@@ -313,7 +315,7 @@ class CloudPathTracer::PhotonCounter {
 };
 
 CloudRay CloudPathTracer::Launched(CloudSource source, PathRandom& random) const {
-  const Rectangle launch = LaunchRectangle(*field_, surroundings_.to_sun);
+  const LaunchArea launch = LaunchAreaOf(*field_, surroundings_.to_sun);
   const double x_m = launch.low.x + launch.size.x * random.Next();
   const double y_m = launch.low.y + launch.size.y * random.Next();
   return {{x_m, y_m, field_->top_altitude_m()},
@@ -325,13 +327,13 @@ void CloudPathTracer::FollowPhoton(CloudRay ray, int max_order, PathRandom& rand
   const double base_m = field_->base_altitude_m(), top_m = field_->top_altitude_m();
   double weight = 1.0;
   for (int order = 0; weight > 0.0 && order <= max_order; ++order) {
-    const std::optional<double> distance_m = tracker_.Collision(ray, kInfinite, random);
+    const std::optional<double> distance_m = tracker_.Collision(ray, kUnbounded_m, random);
     const double slope = ray.direction.z;
     if (distance_m) {
       ray.origin = ray.At(*distance_m);
       counter.Add(FluxKind::kAbsorbed, ray.origin, weight * (1.0 - albedo_));
       weight *= albedo_;
-      ray.direction = Scattered(ray.direction, PhaseAt(ray.origin, random), random);
+      ray.direction = ScatteredFrom(ray.direction, PhaseAt(ray.origin, random), random);
     } else if (slope > 0.0) {
       counter.Add(FluxKind::kUpAtTop, ray.At((top_m - ray.origin.z) / slope), weight);
       return;
@@ -353,7 +355,7 @@ void CloudPathTracer::FollowPhoton(CloudRay ray, int max_order, PathRandom& rand
 }
 
 CloudFluxes CloudPathTracer::Fluxes(CloudSource source, const CloudFluxOptions& options) const {
-  const std::size_t batches = (RequireValid(options.paths) + kFluxGroups - 1) / kFluxGroups;
+  const std::size_t batches = (BatchesOf(options.paths) + kFluxGroups - 1) / kFluxGroups;
   RequireValidColumns(options.columns);
   if (source == CloudSource::kSun && !(surroundings_.to_sun.z > 0.0)) {
     throw InputError("fluxes of clouds: the sun must be above the horizon");
@@ -361,7 +363,7 @@ CloudFluxes CloudPathTracer::Fluxes(CloudSource source, const CloudFluxOptions& 
   if (source == CloudSource::kSky && !field_->lattice().is_periodic) {
     throw InputError("fluxes of clouds below a sky: the field must be periodic");
   }
-  const Rectangle launch = LaunchRectangle(*field_, surroundings_.to_sun);
+  const LaunchArea launch = LaunchAreaOf(*field_, surroundings_.to_sun);
   const glm::dvec3 size_m = field_->lattice().size_m();
   const auto columns = static_cast<std::size_t>(options.columns[0] * options.columns[1]);
   const std::size_t photons = batches * kPathsPerBatch;  // of a group

@@ -22,7 +22,7 @@ namespace {
 // Levels stand at most this number of cells apart along a beam.
 constexpr double kCellsAlongBeam = 4.0;
 constexpr int kFineSteps = 12;
-constexpr double kFirstStep_m = 5.0, kGrowth = 1.15;
+constexpr double kFirstStep_m = 5.0, kStepGrowth = 1.15;
 
 glm::dvec3 CheckedSun(const glm::dvec3& to_sun) {
   if (!(std::abs(glm::length(to_sun) - 1.0) <= 1e-6)) {
@@ -206,7 +206,7 @@ double OpticalDepthToSun(const CloudField& field, const CloudSunMap& map, const 
   for (int i = 0; i < kFineSteps; ++i) {
     depth += step_m * field.Extinction_per_m(point + (along_m + 0.5 * step_m) * map.to_sun());
     along_m += step_m;
-    step_m *= kGrowth;
+    step_m *= kStepGrowth;
   }
   return depth + map.OpticalDepth(point + along_m * map.to_sun());
 }

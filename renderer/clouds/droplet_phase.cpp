@@ -19,7 +19,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr std::size_t kTables = 14;
+constexpr std::size_t kSizes = 14;
 
 /// Returns the effective size parameter of a column of the table.
 double SizeParameter(std::size_t table) {
@@ -27,8 +27,8 @@ double SizeParameter(std::size_t table) {
 }
 
 /// Returns the columns of the table: angles, then phase functions.
-std::vector<std::vector<double>> Columns() {
-  std::vector<std::vector<double>> columns(kTables + 1);
+std::vector<std::vector<double>> TableColumns() {
+  std::vector<std::vector<double>> columns(kSizes + 1);
   atmosphere::VisitCsvRows(
       renderer::EmbeddedText("renderer/data/droplet_phase.csv"),
       [&](const atmosphere::CsvRecord& row) {
@@ -42,11 +42,11 @@ std::vector<std::vector<double>> Columns() {
 }
 
 /// Returns the phase functions by size parameter, which are made once.
-const std::vector<PhaseFunction>& Tables() {
+const std::vector<PhaseFunction>& PhasesBySize() {
   static const std::vector<PhaseFunction> tables = [] {
-    const auto columns = Columns();
+    const auto columns = TableColumns();
     std::vector<PhaseFunction> made;
-    for (std::size_t table = 1; table <= kTables; ++table) {
+    for (std::size_t table = 1; table <= kSizes; ++table) {
       made.push_back({.kind = PhaseKind::kTable,
                       .table = std::make_shared<const PhaseTable>(columns[0], columns[table])});
     }
@@ -60,10 +60,10 @@ const std::vector<PhaseFunction>& Tables() {
 CloudPhases DropletPhases(double wavelength_nm) {
   RequireInRange(wavelength_nm, 300.0, 1000.0, "the wavelength of light in clouds [nm]");
   std::vector<double> radius_um;
-  for (std::size_t table = 0; table < kTables; ++table) {
+  for (std::size_t table = 0; table < kSizes; ++table) {
     radius_um.push_back(SizeParameter(table) * wavelength_nm / (2000.0 * kPi));
   }
-  return {std::move(radius_um), Tables()};
+  return {std::move(radius_um), PhasesBySize()};
 }
 
 }  // namespace alpenglow::renderer

@@ -22,22 +22,24 @@ constexpr double kShallowest = 1e-3;
 // series, and their peak within a third of a degree is rounded off.
 constexpr int kSeriesDegree = 600;
 
-double DepthAt(std::size_t i) {
+double PeakDepthAt(std::size_t i) {
   return kShallowest *
          std::pow(ForwardPeak::kDeepest / kShallowest, static_cast<double>(i) / (kDepths - 1));
 }
 
-double AngleAt(std::size_t i) { return kPi * std::pow(static_cast<double>(i) / (kAngles - 1), 2); }
+double PeakAngleAt(std::size_t i) {
+  return kPi * std::pow(static_cast<double>(i) / (kAngles - 1), 2);
+}
 
 /// The factors of w_l P_l that are added to p, for all degrees and depths.
-struct Factors {
+struct PeakFactors {
   std::vector<double> effective, broadened;  // [depth][degree]
 };
 
-Factors FactorsOf(const std::vector<double>& chi, int degree, double fraction) {
-  Factors factors;
+PeakFactors PeakFactorsOf(const std::vector<double>& chi, int degree, double fraction) {
+  PeakFactors factors;
   for (std::size_t i = 0; i < kDepths; ++i) {
-    const double x = DepthAt(i);
+    const double x = PeakDepthAt(i);
     for (std::size_t l = 0; l < chi.size(); ++l) {
       const double a = static_cast<int>(l) <= degree ? 1.0 : chi[l] / fraction;
       // (e^(-x (1 - a)) - e^(-x)) / x = e^(-x (1 - a)) (1 - e^(-x a)) / x, without cancellation.
@@ -63,9 +65,9 @@ ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
     throw InputError(
         fmt::format("a phase function of clouds has no forward peak beyond degree {}", degree));
   }
-  const Factors factors = FactorsOf(chi, degree, fraction_);
+  const PeakFactors factors = PeakFactorsOf(chi, degree, fraction_);
   tbb::parallel_for(std::size_t{0}, kAngles, [&](std::size_t angle) {
-    const double cosine = std::cos(AngleAt(angle));
+    const double cosine = std::cos(PeakAngleAt(angle));
     const std::vector<double> series = LegendreSeries(kSeriesDegree, cosine);
     const double value = Phase(phase, cosine);
     for (std::size_t depth = 0; depth < kDepths; ++depth) {
