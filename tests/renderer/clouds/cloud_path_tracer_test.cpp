@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -200,6 +201,24 @@ TEST(CloudPaths, TransmittanceIsThatByQuadrature) {
     EXPECT_LT(found.standard_error, 0.02);
   }
   EXPECT_GE(seen, 8);
+}
+
+TEST(CloudPaths, DetailBelowAVoxelIsTracedWithoutBias) {
+  const TilingNoise noise = TilingNoise::Value(16, {.cells = 4, .octaves = 2});
+  const CloudField field = tests::SphereClouds(0.01, true, {&noise, 5.0, 160.0});
+  const CloudTracker fine(field, true), coarse(field, false);
+  const CloudPathTracer tracer(field, Droplets(), {}, true);
+  double largest_change = 0.0;
+  for (int i = 1; i <= 20; ++i) {
+    // The rays graze the sphere of 120 m around (700, 980, 1130).
+    const CloudRay ray{{560.0, 870.0 + 11.0 * i, 1150.0}, Towards(2.0, 5.0)};
+    const double expected = std::exp(-fine.OpticalDepth(ray, kFar_m, 0.5));
+    const CloudEstimate found = tracer.Radiance(ray, {.max_order = 1}).transmittance;
+    EXPECT_NEAR(found.value, expected, 3.5 * found.standard_error + 1e-12);
+    const double smooth = std::exp(-coarse.OpticalDepth(ray, kFar_m, 0.5));
+    largest_change = std::max(largest_change, std::abs(smooth - expected));
+  }
+  EXPECT_GT(largest_change, 0.02) << "the detail must matter";
 }
 
 TEST(CloudPaths, SingleScatteringIsThatByQuadrature) {
