@@ -108,13 +108,13 @@ TEST(CloudPaths, PlaneLayerHasTheRadianceOfThePathTracerOfTheAir) {
 /// Returns the flux through a horizontal plane by paths in random directions from random points of
 /// it, for a unit flux of the sun.
 CloudEstimate FluxByPaths(const CloudPathTracer& tracer, double altitude_m, double side,
-                          double mu_s, std::size_t paths) {
+                          double mu_s, int paths) {
   std::vector<double> flux;
-  for (std::size_t i = 0; i < paths; ++i) {
-    CloudPathTracer::PathRandom random(71, i, 0);
-    const double x_m = tests::SphereShape::kPeriod_m * random.Next();
-    const double y_m = tests::SphereShape::kPeriod_m * random.Next();
-    const double mu = std::sqrt(1.0 - random.Next()), azimuth_rad = 2.0 * kPi * random.Next();
+  for (int i = 1; i <= paths; ++i) {
+    CloudPathTracer::PathRandom random(71, static_cast<std::uint64_t>(i), 0);
+    const double x_m = tests::SphereShape::kPeriod_m * Halton(i, 2);
+    const double y_m = tests::SphereShape::kPeriod_m * Halton(i, 3);
+    const double mu = std::sqrt(Halton(i, 5)), azimuth_rad = 2.0 * kPi * Halton(i, 7);
     const double sine = std::sqrt(1.0 - mu * mu);
     const CloudRay ray{{x_m, y_m, altitude_m},
                        {sine * std::cos(azimuth_rad), sine * std::sin(azimuth_rad), side * mu}};
@@ -127,7 +127,7 @@ TEST(CloudPaths, RadiancesOfConservativeCloudsSumToUnitFlux) {
   const CloudField field = tests::SphereClouds(0.05);
   const glm::dvec3 to_sun = Towards(35.0, 20.0);
   const CloudPathTracer tracer(field, Droplets(), {to_sun});
-  const auto paths = tests::ScaledDown<std::size_t>(150000, 10000);
+  const int paths = tests::ScaledDown(150000, 10000);
   const CloudEstimate up = FluxByPaths(tracer, 1600.0, -1.0, to_sun.z, paths);
   const CloudEstimate down = FluxByPaths(tracer, 900.0, 1.0, to_sun.z, paths);
   const CloudFluxes fluxes = tracer.Fluxes(
@@ -233,7 +233,7 @@ TEST(CloudPaths, SingleScatteringIsThatByQuadrature) {
     constexpr double kStep_m = 2.0;
     double expected = 0.0;
     for (double t_m = 0.5 * kStep_m; t_m < 6000.0; t_m += kStep_m) {
-      const double extinction_per_m = field.Extinction_per_m(ray.At(t_m));
+      const double extinction_per_m = field.DetailedExtinction_per_m(ray.At(t_m));
       if (extinction_per_m == 0.0) continue;
       const double depth = tracker.OpticalDepth(ray, t_m, 2.0) +
                            tracker.OpticalDepth({ray.At(t_m), to_sun}, kFar_m, 2.0);
@@ -288,10 +288,10 @@ CloudEstimate MeanReflected(const CloudField& field, const glm::dvec3& to_eye,
                             const glm::dvec3& to_sun) {
   const CloudPathTracer tracer(field, Droplets(), {to_sun});
   std::vector<double> radiance;
-  for (std::size_t i = 0; i < tests::ScaledDown<std::size_t>(150000, 15000); ++i) {
-    CloudPathTracer::PathRandom random(19, i, 0);
-    const double x_m = tests::SphereShape::kPeriod_m * random.Next();
-    const double y_m = tests::SphereShape::kPeriod_m * random.Next();
+  for (int i = 1; i <= tests::ScaledDown(150000, 15000); ++i) {
+    CloudPathTracer::PathRandom random(19, static_cast<std::uint64_t>(i), 0);
+    const double x_m = tests::SphereShape::kPeriod_m * Halton(i, 2);
+    const double y_m = tests::SphereShape::kPeriod_m * Halton(i, 3);
     radiance.push_back(tracer.OnePath({{x_m, y_m, 1600.0}, -to_eye}, random).sun / to_sun.z);
   }
   return MeanOf(radiance);

@@ -81,7 +81,7 @@ struct SunErrors {
 SunErrors ErrorsAtEvents(const CloudField& field, const CloudSunMap& map, int points) {
   double extinction = 0.0, truth = 0.0, bias = 0.0, squares = 0.0;
   for (const glm::dvec3& point : PointsOf(field, points)) {
-    const double weight = field.Extinction_per_m(point);
+    const double weight = field.DetailedExtinction_per_m(point);
     if (weight == 0.0) continue;
     const double exact = std::exp(-ByQuadrature(field, point, map.to_sun()));
     const double error = std::exp(-OpticalDepthToSun(field, map, point)) - exact;
