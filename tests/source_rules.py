@@ -159,7 +159,7 @@ def by_locale(path, text):
     for number, line in enumerate(text.splitlines(), 1):
         found = BY_LOCALE.search(line.partition("//")[0])
         if found:
-            yield f"{path}:{number}: {found[0]} depends on the locale of the host program"
+            yield f"{path}:{number}: {found[0]} depends on the locale of the host program; use atmosphere/base/parsing.h"
 
 
 def functions_without_case(shared, cases):

@@ -231,7 +231,7 @@ class AtmosphereFile {
   // may replace the preset's table and then has its mean cosine at 550 nm; any other lobe needs its
   // own g.
   PhaseFunction LobeInsteadOf(PhaseKind of_preset, PhaseKind kind) const {
-    if (kind == PhaseKind::kRayleigh || mie_->Has("g")) return {.kind = kind};
+    if (!ParameterOf(FormOf(kind), "g") || mie_->Has("g")) return {.kind = kind};
     const bool has_mixture = aerosol_ && aerosol_->Has("mixture");
     if (kind == PhaseKind::kCornetteShanks && of_preset == PhaseKind::kTable && !has_mixture) {
       const double mean_cosine = MeanCosine(AerosolPhase(preset_, {550.0}).front());

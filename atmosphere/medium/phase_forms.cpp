@@ -159,6 +159,7 @@ constexpr std::array kOneLobe{kG};
 constexpr std::array kOneLobeOfSchlick{kGOfSchlick};
 constexpr std::array kTwoLobes{kG, kGBack, kBackWeight};
 constexpr std::array kDraineLobe{kG, kAlpha};
+constexpr std::array kLobeAndDraine{kG, kGBack, kBackWeight, kAlpha};
 constexpr std::array kAllParameters{kG, kGBack, kBackWeight, kAlpha};
 
 using Function = PhaseFunction;
@@ -246,7 +247,7 @@ constexpr PhaseForm kForms[] = {
 
     {.kind = PhaseKind::kHenyeyGreensteinDraine,
      .name = "henyey-greenstein-draine",
-     .parameters = kAllParameters,
+     .parameters = kLobeAndDraine,
      ALPENGLOW_PHASE_VALUE(PhaseHenyeyGreensteinDraine(c, p.x, p.y, p.z, p.w)),
      .mean_cosine =
          [](const Function& p) {

@@ -161,9 +161,9 @@ void CallWriter(const fs::path& target, const fs::path& temporary,
 }
 
 // Extensions of known file formats; a folder may be called "tables.v2".
-constexpr std::array<std::string_view, 14> kExtensionsOfFiles{
-    ".bin", ".csv",  ".dat", ".dds", ".exr", ".hdr",  ".jpg",
-    ".ktx", ".ktx2", ".npy", ".png", ".tif", ".tiff", ".toml"};
+constexpr std::array kExtensionsOfFiles =
+    std::to_array<std::string_view>({".bin", ".csv", ".dat", ".dds", ".exr", ".hdr", ".jpg", ".ktx",
+                                     ".ktx2", ".npy", ".png", ".tif", ".tiff", ".toml"});
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // This header provides what the public HdrImage, an image of light, does not have: its checks, the
-// image that is developed for a display, and layers of polarisation. exr.h and png.h read and write
-// images.
+// image that is developed for a display, and layers of polarisation. picture_format.h lists the
+// formats of files.
 //
 // Colours of light are not clamped. A colour more saturated than the display's gamut has a negative
 // channel and keeps its luminance. The red of a low sun has negative blue; the blue that ozone

@@ -14,7 +14,7 @@
 // lamps (LampStage), so light of lamps is attenuated there and not by the march.
 //
 // A new kind of medium is a subclass of LocalMedium with one of LitMedium, and an entry in the
-// constructor of LocalMedia.
+// constructor of LocalMedia. renderer/README.md lists what its section of scene.toml needs.
 #pragma once
 
 #include <glm/vec3.hpp>

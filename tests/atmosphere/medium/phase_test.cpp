@@ -68,7 +68,7 @@ std::vector<PhaseFunction> ManyPhases() {
                          0.5, 0.76, 0.8, 0.93, 0.99, 0.999}) {
     for (const PhaseForm& form : PhaseForms()) {
       const std::optional<PhaseParameter> of_lobe = ParameterOf(form, "g");
-      if (!of_lobe || !(std::abs(g) < of_lobe->high)) continue;
+      if (!of_lobe || !(g > of_lobe->low && g < of_lobe->high)) continue;
       phases.push_back(Make(form.kind, g, 0.35));
       if (!ParameterOf(form, "back_weight")) continue;
       phases.back().g_back = -0.5 * g;

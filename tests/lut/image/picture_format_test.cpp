@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "lut/cli/output_file.h"
 #include "lut/image/development.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -41,6 +42,12 @@ TEST_F(PictureFormatTest, ExtensionSelectsTheFormat) {
   for (const PictureFormat& format : PictureFormats())
     EXPECT_EQ(&FormatOfPicture(std::string("a.b") + format.extension), &format) << format.name;
   EXPECT_STREQ(FormatOfPicture("A.EXR").name, "EXR");
+}
+
+TEST_F(PictureFormatTest, NoFolderIsNamedLikeAPicture) {
+  for (const PictureFormat& format : PictureFormats())
+    EXPECT_NE(FaultOfFolderName(std::string("a") + format.extension), "") << format.name;
+  EXPECT_EQ(FaultOfFolderName("tables.v2"), "");
 }
 
 TEST_F(PictureFormatTest, MessagesListEveryFormat) {

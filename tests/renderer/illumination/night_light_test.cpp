@@ -145,8 +145,9 @@ struct Night {
   Night(const NightSky& sky, double eye_m, std::optional<double> town_zenith = std::nullopt)
       : height_m(eye_m),
         light(sky, tests::Earth().single_scattering(), colour, kZenith, eye_m,
-              town_zenith ? Skyglow(*town_zenith, 0.0, tests::Earth().single_scattering(), colour)
-                          : Spectrum()) {}
+              town_zenith ? std::optional(Skyglow(*town_zenith, 0.0,
+                                                  tests::Earth().single_scattering(), colour))
+                          : std::nullopt) {}
 
   /// Returns the luminance of the night sky in a direction, through the air [cd/m^2].
   [[nodiscard]] double Luminance(const glm::dvec3& direction) const {
