@@ -29,7 +29,7 @@ struct OpticalDepthMap {
 /// The depth of a shape with a parameter [m], as CloudShape::SignedDepth_m.
 using DepthWithParameter = std::function<double(const glm::dvec3& point, double parameter)>;
 
-/// What a shape is adjusted to.
+/// The cover to which a shape is adjusted.
 struct WantedCover {
   double cover;                // in [0, 1]
   double least_optical_depth;  // of a covered column

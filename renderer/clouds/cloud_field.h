@@ -4,7 +4,7 @@
 // The shape is the signed depth F under the cloud's surface [m], positive inside. It is stored in
 // sparse bricks of 8 x 8 x 8 voxels with one byte (1 m) per corner of a voxel, and trilinear between
 // corners. A byte of depth keeps an edge sharp that a byte of density would blur, and a field of
-// 20.48 km with voxels of 20 m takes about 20 MB. The extinction follows from depth and altitude:
+// 20.48 km with voxels of 20 m takes some tens of MB. The extinction follows from depth and altitude:
 //
 //   sigma(p) = f(F(p)) sigma_c(z)
 //   f(F)     = smoothstep(F / w) (a + (1 - a) min(1, F / c)),   0 for F <= 0     (CloudEdge)
@@ -88,7 +88,7 @@ struct CloudDetail {
   double period_m = 160.0;
 };
 
-/// What fills a shape.
+/// The water or ice that fills a shape.
 struct CloudMatter {
   CloudColumn column;
   CloudEdge edge;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kCloudVoxel_m = 20.0;
 
-/// What differs between genera besides the shape.
+/// The values of a genus besides its shape.
 struct GenusMatter {
   CloudEdge edge;
   double adiabatic_fraction;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a user says about a layer of clouds, and the values that each genus has without it.
+// Options of a layer of clouds, and their defaults for each genus.
 //
 // Bases and depths are those usual for the genus (World Meteorological Organization, International
 // Cloud Atlas, 2017; https://cloudatlas.wmo.int). Droplet numbers: Miles, Verlinde and Clothiaux

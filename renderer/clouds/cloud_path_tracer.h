@@ -42,7 +42,7 @@ struct CloudSurroundings {
   double ground_altitude_m = 0.0;    // at or below the base of the field
 };
 
-/// What droplets or crystals do with light of one wavelength.
+/// Phase functions and albedo of droplets or crystals at one wavelength.
 struct CloudScatterers {
   CloudPhases phases;
   std::optional<double> albedo = {};  // of single scattering, in [0, 1]; nothing: the field's

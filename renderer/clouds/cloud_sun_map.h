@@ -13,7 +13,7 @@
 // Between beams the transmittance is linear, so that the mean of a shadow is that of the beams, but
 // clouds are blurred over cells of 20 m. OpticalDepthToSun() therefore takes twelve steps through the
 // field first, of 5 m times 1.15^n, and the map 145 m ahead. Steps that grow faster reach further,
-// but their noise makes the mean transmittance too large: in cumulus, by 1.5 % for 4 m times 1.3^n.
+// but the noise of their optical depth makes the mean transmittance too large.
 #pragma once
 
 #include <array>

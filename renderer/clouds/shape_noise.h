@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the shapes of all genera share: cubes of noise, which are made once, random numbers by
-// count, and the direction of the wind.
+// The shapes of all genera share cubes of noise, which are made once, random numbers by count, and
+// the direction of the wind.
 #pragma once
 
 #include <cstdint>
