@@ -12,6 +12,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/medium_fields.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
 #include "atmosphere/time_place/geodesy.h"
@@ -238,10 +239,7 @@ Fault FaultOfDepolarisation(const Medium& medium) {
 
 void AddPhase(const PhaseFunction& phase, Fnv1a& fnv) {
   fnv.Add(NameOf(phase.kind));
-  fnv.Add(phase.g);
-  fnv.Add(phase.g_back);
-  fnv.Add(phase.back_weight);
-  fnv.Add(phase.alpha);
+  for (const PhaseParameter& parameter : PhaseParameters()) fnv.Add(phase.*parameter.member);
   if (phase.table) fnv.Add(phase.table->hash());
 }
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/medium/medium_fields.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/names.h"
+#include "atmosphere/medium/phase_forms.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -123,8 +126,32 @@ MediumRows RayleighRows() {
   };
 }
 
+std::string LimitsOf(const PhaseParameter& parameter) {
+  return parameter.has_ends ? "" : "without these ends";
+}
+
+/// Returns the limits beyond the widest range: its ends, and narrower ranges of single phase
+/// functions.
+std::string AllLimitsOf(const PhaseParameter& parameter) {
+  std::string limits = LimitsOf(parameter);
+  for (const PhaseForm& form : PhaseForms()) {
+    const PhaseParameter own = ParameterOf(form, parameter.key).value_or(parameter);
+    if (own.low == parameter.low && own.high == parameter.high) continue;
+    limits += fmt::format("{}of `{}` between {} and {}", limits.empty() ? "" : "; ", form.name,
+                          own.low, own.high);
+    if (!own.has_ends) limits += ", " + LimitsOf(own);
+  }
+  return limits;
+}
+
+TomlField<Medium> RowOf(const PhaseParameter& parameter) {
+  return {parameter.key, Numbers<Medium>({parameter.low, parameter.high}), parameter.unit,
+          AllLimitsOf(parameter),
+          fmt::format("{}: one value, or one per wavelength", parameter.text)};
+}
+
 MediumRows MieRows() {
-  return {
+  MediumRows rows{
       {"scattering_per_m", List(&Medium::mie_scattering_per_m, ranges::kCoefficient_per_m), "m⁻¹",
        "and at most `extinction_per_m`",
        "Scattering coefficient at the ground, one value per wavelength"},
@@ -133,26 +160,23 @@ MediumRows MieRows() {
       {"scale_height_m", Number(&Medium::mie_scale_height_m, Pair(ranges::kScaleHeight_m)), "m", "",
        "Scale height of the density"},
       {"phase", Text<Medium>(), "", "see below", "Phase function"},
-      {"g", Numbers<Medium>({-1.0, 1.0}), "1",
-       "without these ends; of `schlick` between -0.938 and 0.938, without these ends",
-       "Asymmetry of the first lobe: one value, or one per wavelength"},
-      {"g_back", Numbers<Medium>({-1.0, 1.0}), "1", "without these ends",
-       "Asymmetry of the second lobe: one value, or one per wavelength"},
-      {"back_weight", Numbers<Medium>({0.0, 1.0}), "1", "",
-       "Fraction of the second lobe: one value, or one per wavelength"},
-      {"alpha", Numbers<Medium>({0.0, 100.0}), "1", "",
-       "Parameter of Draine's phase function: one value, or one per wavelength"},
-      {"phase_file", Text<Medium>(), "", "",
-       "CSV file of the phase function `table`, relative to the atmosphere file"},
-      {"phase_angles_deg", Numbers<Medium>({0.0, 180.0}), "degrees",
-       "at least 5 values that strictly ascend from 0 to 180",
-       "Scattering angles of `table`, instead of `phase_file`"},
-      {"phase_per_sr", Numbers<Medium>({0.0, 1e12}), "sr⁻¹", "without 0",
-       "Values of `table` at these angles: one list, or one list per wavelength, one after the "
-       "other"},
-      {"droplet_diameter_um", Number<Medium>({kSmallestDroplet_um, kLargestDroplet_um}), "µm", "",
-       "Diameter of the droplets of `fog`"},
   };
+  for (const PhaseParameter& parameter : PhaseParameters()) rows.push_back(RowOf(parameter));
+  rows.insert(
+      rows.end(),
+      {
+          {"phase_file", Text<Medium>(), "", "",
+           "CSV file of the phase function `table`, relative to the atmosphere file"},
+          {"phase_angles_deg", Numbers<Medium>({0.0, 180.0}), "degrees",
+           "at least 5 values that strictly ascend from 0 to 180",
+           "Scattering angles of `table`, instead of `phase_file`"},
+          {"phase_per_sr", Numbers<Medium>({0.0, 1e12}), "sr⁻¹", "without 0",
+           "Values of `table` at these angles: one list, or one list per wavelength, one after the "
+           "other"},
+          {"droplet_diameter_um", Number<Medium>({kSmallestDroplet_um, kLargestDroplet_um}), "µm",
+           "", "Diameter of the droplets of `fog`"},
+      });
+  return rows;
 }
 
 MediumRows AerosolRows() {

@@ -63,8 +63,11 @@ ScatteringMatrix SphereMatrix(const SphereRatios& ratios, double phase_per_sr,
 
 bool PhaseFunction::operator==(const PhaseFunction& other) const {
   const bool same_table = table == other.table || (table && other.table && *table == *other.table);
-  return kind == other.kind && g == other.g && g_back == other.g_back &&
-         back_weight == other.back_weight && alpha == other.alpha && same_table;
+  const auto parameters = PhaseParameters();
+  return kind == other.kind && same_table &&
+         std::all_of(parameters.begin(), parameters.end(), [&](const PhaseParameter& parameter) {
+           return this->*parameter.member == other.*parameter.member;
+         });
 }
 
 double Phase(const PhaseFunction& phase, double cos_scattering) {

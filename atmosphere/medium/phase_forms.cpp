@@ -148,12 +148,18 @@ std::vector<double> MixedCoefficients(std::vector<double> first, const std::vect
   return first;
 }
 
-constexpr PhaseParameter kG{"g", &PhaseFunction::g, -1.0, 1.0, false};
-constexpr PhaseParameter kGOfSchlick{"g", &PhaseFunction::g, -kLargestSchlickG, kLargestSchlickG,
-                                     false};
-constexpr PhaseParameter kGBack{"g_back", &PhaseFunction::g_back, -1.0, 1.0, false};
-constexpr PhaseParameter kBackWeight{"back_weight", &PhaseFunction::back_weight, 0.0, 1.0, true};
-constexpr PhaseParameter kAlpha{"alpha", &PhaseFunction::alpha, 0.0, 100.0, true};
+using Function = PhaseFunction;
+
+constexpr PhaseParameter kG{
+    "g", &Function::g, -1.0, 1.0, false, "1", "Asymmetry of the first lobe"};
+constexpr PhaseParameter kGOfSchlick{kG.key,  kG.member, -kLargestSchlickG, kLargestSchlickG, false,
+                                     kG.unit, kG.text};
+constexpr PhaseParameter kGBack{
+    "g_back", &Function::g_back, -1.0, 1.0, false, "1", "Asymmetry of the second lobe"};
+constexpr PhaseParameter kBackWeight{"back_weight", &Function::back_weight,       0.0, 1.0, true,
+                                     "1",           "Fraction of the second lobe"};
+constexpr PhaseParameter kAlpha{
+    "alpha", &Function::alpha, 0.0, 100.0, true, "1", "Parameter of Draine's phase function"};
 
 constexpr std::array kOneLobe{kG};
 constexpr std::array kOneLobeOfSchlick{kGOfSchlick};
@@ -161,8 +167,6 @@ constexpr std::array kTwoLobes{kG, kGBack, kBackWeight};
 constexpr std::array kDraineLobe{kG, kAlpha};
 constexpr std::array kLobeAndDraine{kG, kGBack, kBackWeight, kAlpha};
 constexpr std::array kAllParameters{kG, kGBack, kBackWeight, kAlpha};
-
-using Function = PhaseFunction;
 
 // The macro uses the formula of a value three times: as C++ for double and float, and as text for
 // GLSL.

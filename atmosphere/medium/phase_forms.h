@@ -14,12 +14,14 @@
 
 namespace alpenglow::atmosphere {
 
-/// A parameter of phase functions, with its key in atmosphere.toml.
+/// A parameter of phase functions, with its key, unit and meaning in atmosphere.toml.
 struct PhaseParameter {
   const char* key;
   double PhaseFunction::*member;
   double low, high;
   bool has_ends;  // whether low and high are values of the parameter
+  const char* unit;
+  const char* text;
 };
 
 struct PhaseForm {

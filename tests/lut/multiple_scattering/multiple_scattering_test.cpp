@@ -9,11 +9,13 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/atmosphere_file.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "atmosphere/shared_glsl/instruction_set.h"
 #include "tests/fixtures/bands_near.h"
 #include "tests/fixtures/fault_of.h"
@@ -53,17 +55,27 @@ std::vector<double> MidpointCoefficients(const PhaseFunction& phase, int degree,
   return chi;
 }
 
+/// Returns two phase functions of each kind except tables, with parameters near alternate ends of
+/// their ranges.
+std::vector<PhaseFunction> PhasesOfEveryFormula() {
+  std::vector<PhaseFunction> phases;
+  for (const PhaseForm& form : PhaseForms()) {
+    if (form.kind == PhaseKind::kTable) continue;
+    for (double share : {0.05, 0.95}) {
+      PhaseFunction& phase = phases.emplace_back(PhaseFunction{.kind = form.kind});
+      for (const PhaseParameter& parameter : form.parameters) {
+        phase.*parameter.member = std::lerp(parameter.low, parameter.high, share);
+        share = 1.0 - share;
+      }
+    }
+  }
+  return phases;
+}
+
 // 40000 midpoints are exact to 1e-7 for lobes of 3 degrees and wider.
 TEST(LegendreCoefficients, OfEveryKindEqualTheIntegralsToOneInAMillion) {
-  using enum PhaseKind;
-  const PhaseFunction phases[] = {
-      {.kind = kRayleigh},
-      {.kind = kDoubleHenyeyGreenstein, .g = 0.9, .g_back = -0.95, .back_weight = 0.2},
-      {.kind = kCornetteShanks, .g = -0.8},
-      {.kind = kSchlick, .g = 0.8},
-      {.kind = kSchlick, .g = -0.9},
-      {.kind = kDraine, .g = -0.6, .alpha = 30.0},
-      DropletPhase(4.0)};
+  std::vector<PhaseFunction> phases = PhasesOfEveryFormula();
+  phases.push_back(DropletPhase(4.0));
   constexpr int kDegree = tests::ScaledDown(170, 40);
   for (const PhaseFunction& phase : phases) {
     const std::vector<double> chi = LegendreCoefficients(phase, kDegree);
