@@ -13,6 +13,8 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/medium_fields.h"
+#include "atmosphere/medium/phase_forms.h"
+#include "atmosphere/medium/phase_table.h"
 #include "lut/cli/program.h"
 #include "renderer/scene/scene_fields.h"
 #include "renderer/scene/scene_options.h"
@@ -151,9 +153,13 @@ std::string LightText(const Light& light, const FileHashes& hashes) {
          fmt::format(", cone {} to {}", DegreesText(light.inner_rad), DegreesText(light.outer_rad));
 }
 
-/// The asymmetry parameter of droplets tells their diameter.
+/// Returns kind and all parameters; the parameters of droplets follow from their diameter.
 std::string PhaseText(const PhaseFunction& phase) {
-  return fmt::format("{} g {}", NameOf(phase.kind), phase.g);
+  std::string text = NameOf(phase.kind);
+  for (const PhaseParameter& parameter : FormOf(phase.kind).parameters)
+    text += fmt::format(" {} {}", parameter.key, phase.*parameter.member);
+  if (phase.table) text += fmt::format(" {:016x}", phase.table->hash());
+  return text;
 }
 
 std::string LayerText(const MediumLayer& layer) {

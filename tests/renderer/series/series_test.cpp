@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "lut/cli/program.h"
 #include "lut/image/exr.h"
 #include "lut/image/night_vision.h"
@@ -724,6 +725,23 @@ TEST(Manifest, EveryMemberOfTheTablesOfFieldsIsRecorded) {
   ExpectRecorded(LightFields(), scene, [](Scene& of) -> Light& { return of.lights[0]; });
   ExpectRecorded(LayerFields(), scene, [](Scene& of) -> MediumLayer& { return of.layers.front(); });
   ExpectRecorded(VolumeFields(), scene, [](Scene& of) -> Volume& { return of.volumes[0]; });
+}
+
+TEST(Manifest, EveryParameterOfAPhaseFunctionIsRecorded) {
+  Scene scene;
+  scene.medium = MediumPreset("earth");
+  scene.layers.resize(1);
+  PhaseFunction& phase = scene.layers[0].phase;
+  for (const PhaseForm& form : PhaseForms()) {
+    if (form.kind == PhaseKind::kTable) continue;
+    phase = {.kind = form.kind};
+    const std::string before = Fingerprint(RecordOf(scene));
+    for (const PhaseParameter& parameter : form.parameters) {
+      phase = {.kind = form.kind};
+      phase.*parameter.member += 1e-6;
+      EXPECT_NE(Fingerprint(RecordOf(scene)), before) << form.name << " " << parameter.key;
+    }
+  }
 }
 
 TEST_F(Provenance, FingerprintsFollowTheContentOfEveryFile) {
