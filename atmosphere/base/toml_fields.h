@@ -104,6 +104,8 @@ template <typename Object>
 struct TomlFields {
   std::string name;  // of the table in the file
   std::vector<TomlField<Object>> fields;
+  std::string text = {};  // the meaning
+  bool is_list = false;   // [[name]], any number of times
 
   [[nodiscard]] std::vector<TomlKey> Keys() const {
     std::vector<TomlKey> keys;

@@ -447,7 +447,7 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
                     const MediumUse& use) {
   const TomlTable document(text, origin);
   std::vector<std::string> sections;
-  for (const SceneSection& section : SectionsOfScene()) sections.push_back(section.name);
+  ForEachTable([&](const auto& fields, const auto&) { sections.push_back(fields.name); });
   document.AllowOnly(sections);
   Scene scene;
   ReadPlace(document, scene);
@@ -460,12 +460,12 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
     document.Table("terrain")->Fail(
         "land_cover", "terrain.land_cover is for the cover mountain; ground.cover is another");
   }
-  for (const TomlTable& light : document.Tables("light")) {
+  for (const TomlTable& light : document.Tables(LightFields().name)) {
     scene.lights.push_back(LightOf(light, folder));
   }
   scene.layers = LayersOf(document);
   scene.town_zenith = TownZenithOf(document);
-  for (const TomlTable& volume : document.Tables("volume")) {
+  for (const TomlTable& volume : document.Tables(VolumeFields().name)) {
     scene.volumes.push_back(VolumeOf(volume, folder, scene.medium.wavelengths_nm.size()));
   }
   return scene;

@@ -70,8 +70,8 @@ const TomlFields<Scene>& PlaceFields() {
       "place",
       {{"latitude", Number<Scene>(kLatitudes), "degrees north", "required", "", "46.5"},
        {"longitude", Number<Scene>(kLongitudes), "degrees east", "required", "", "8.0"},
-       {"zone", Text(&Scene::zone), "", "", "IANA name; local times need it",
-        "\"Europe/Zurich\""}}};
+       {"zone", Text(&Scene::zone), "", "", "IANA name; local times need it", "\"Europe/Zurich\""}},
+      "of the camera"};
   return fields;
 }
 
@@ -80,7 +80,8 @@ const TomlFields<Scene>& TimeFields() {
       "time",
       {{"utc", Text<Scene>(), "", "", "date and time", "\"2026-06-21T04:00:00Z\""},
        {"local", Text<Scene>(), "", "", "in place.zone, instead of utc",
-        "# \"2026-06-21T06:00:00\""}}};
+        "# \"2026-06-21T06:00:00\""}},
+      "used if the command line gives no time"};
   return fields;
 }
 
@@ -143,7 +144,8 @@ const TomlFields<TerrainSource>& TerrainFields() {
         "\"colour.tif\""},
        {"land_cover", Text<TerrainSource>(), "", "",
         "instead of colour: classes of ESA WorldCover, for the cover \"mountain\"",
-        "# \"worldcover.tif\""}}};
+        "# \"worldcover.tif\""}},
+      "one of dem, mesh, none and range; without them range, with a warning"};
   return fields;
 }
 
@@ -193,7 +195,9 @@ const TomlFields<Light>& LightFields() {
        {"pitch", Degrees(&Light::pitch_rad, kPitches), "degrees", "",
         "for an IES file the default is -90, straight down", "0.0"},
        {"cone", Numbers<Light>({0.0, 180.0}), "degrees", "",
-        "half angles of a spot: full inside the first, none outside the second", "[10.0, 25.0]"}}};
+        "half angles of a spot: full inside the first, none outside the second", "[10.0, 25.0]"}},
+      "a lamp; any number",
+      /*is_list=*/true};
   return fields;
 }
 
@@ -211,7 +215,8 @@ const TomlFields<MediumLayer>& LayerFields() {
        {"droplet_diameter_um", Number<MediumLayer>({kSmallestDroplet_um, kLargestDroplet_um}),
         "micrometres", "", "", "15.0"},
        {"g", Number<MediumLayer>({-0.99, 0.99}), "", "",
-        "of Henyey and Greenstein, instead of droplet_diameter_um", "# 0.85"}}};
+        "of Henyey and Greenstein, instead of droplet_diameter_um", "# 0.85"}},
+      "over the whole scene"};
   return fields;
 }
 
@@ -220,7 +225,8 @@ const TomlFields<Scene>& NightFields() {
       "night",
       {{"bortle", Number<Scene>({1.0, 9.0}), "", "", "class of the sky", "# 4"},
        {"zenith_mag_per_arcsec2", Number<Scene>({14.0, kNaturalZenith}), "", "",
-        "brightness of the zenith, instead of bortle", "# 20.5"}}};
+        "brightness of the zenith, instead of bortle", "# 20.5"}},
+      "light of towns in the air"};
   return fields;
 }
 
@@ -258,29 +264,12 @@ const TomlFields<Volume>& VolumeFields() {
         "# 1500.0"},
        {"droplet_diameter_um", Number<Volume>({kSmallestDroplet_um, kLargestDroplet_um}),
         "micrometres", "", "instead of g", "# 15.0"},
-       {"g", Number<Volume>({-0.99, 0.99}), "", "", "of Henyey and Greenstein", "0.5"}}};
+       {"g", Number<Volume>({-0.99, 0.99}), "", "", "of Henyey and Greenstein", "0.5"}},
+      "smoke, a bank of fog, a glowing gas; any number",
+      /*is_list=*/true};
   return fields;
 }
 
-std::vector<TomlFields<Scene>> TablesOfScene() {
-  return {PlaceFields(), TimeFields(), AtmosphereFields(), NightFields()};
-}
-
 std::string NameOf(Light::Type type) { return kLightTypes.Of(type); }
-
-std::vector<SceneSection> SectionsOfScene() {
-  return {
-      {"place", false, "of the camera", PlaceFields().Keys()},
-      {"time", false, "used if the command line gives no time", TimeFields().Keys()},
-      {"camera", false, "", CameraFields().Keys()},
-      {"atmosphere", false, "", AtmosphereFields().Keys()},
-      {"terrain", false, "one of dem, mesh, none and range; without them range, with a warning",
-       TerrainFields().Keys()},
-      {"ground", false, "", GroundFields().Keys()},
-      {"light", true, "a lamp; any number", LightFields().Keys()},
-      {"fog", false, "over the whole scene", LayerFields().Keys()},
-      {"volume", true, "smoke, a bank of fog, a glowing gas; any number", VolumeFields().Keys()},
-      {"night", false, "light of towns in the air", NightFields().Keys()}};
-}
 
 }  // namespace alpenglow::renderer

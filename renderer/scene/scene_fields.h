@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The keys of scene.toml, section by section in the order of the file: their values, units, members
-// and meanings. The reader of the file, the records of a scene in the headers of pictures and the
-// manual follow these tables.
+// The keys of scene.toml, table by table: their values, units, members and meanings. The reader of
+// the file, the records of a scene in the headers of pictures and the manual follow these tables,
+// and ForEachTable is the one list of them.
 #pragma once
 
+#include <span>
 #include <string>
-#include <vector>
 
 #include "atmosphere/base/toml_fields.h"
 #include "renderer/scene/scene.h"
@@ -23,22 +23,26 @@ namespace alpenglow::renderer {
 [[nodiscard]] const TomlFields<Scene>& NightFields();
 [[nodiscard]] const TomlFields<Volume>& VolumeFields();
 
-/// Returns the tables whose members are those of a scene itself: place, time, atmosphere, night.
-[[nodiscard]] std::vector<TomlFields<Scene>> TablesOfScene();
-
 /// Returns the type of a lamp as the file names it.
 [[nodiscard]] std::string NameOf(Light::Type type);
 
-/// A section as the manual shows it.
-struct SceneSection {
-  std::string name;
-  bool is_list = false;  // [[name]], any number of times
-  std::string text;
-  std::vector<TomlKey> keys;
-};
-
-/// Returns the sections in the order of the file.
-[[nodiscard]] std::vector<SceneSection> SectionsOfScene();
+/// Calls `use(fields, objects_of)` for every table in the order of the file. `objects_of(scene)`
+/// returns a span over the objects that a scene has of the table: the scene itself, one of its
+/// members, or a list.
+template <typename Use>
+void ForEachTable(const Use& use) {
+  const auto whole = [](auto& scene) { return std::span(&scene, 1); };
+  use(PlaceFields(), whole);
+  use(TimeFields(), whole);
+  use(CameraFields(), [](auto& scene) { return std::span(&scene.camera, 1); });
+  use(AtmosphereFields(), whole);
+  use(TerrainFields(), [](auto& scene) { return std::span(&scene.terrain, 1); });
+  use(GroundFields(), [](auto& scene) { return std::span(&scene.ground, 1); });
+  use(LightFields(), [](auto& scene) { return std::span(scene.lights); });
+  use(LayerFields(), [](auto& scene) { return std::span(scene.layers); });
+  use(VolumeFields(), [](auto& scene) { return std::span(scene.volumes); });
+  use(NightFields(), whole);
+}
 
 /// The deepest place [m above the ellipsoid], the limit of CheckedPlace, and the highest.
 inline constexpr double kDeepestPlace_m = -12000.0;

@@ -82,11 +82,13 @@ Metadata NamedValuesOf(const TomlFields<Object>& fields, const Object& object) {
   return values;
 }
 
-/// Adds the values that are recorded by name, under their own keys.
+/// Returns the values that are recorded by name, under their own keys.
 template <typename Object>
-void AddNamedValues(const TomlFields<Object>& fields, const Object& object, Metadata& metadata) {
+Metadata NamedRecordsOf(const TomlFields<Object>& fields, const Object& object) {
+  Metadata records;
   for (const auto& [key, value] : NamedValuesOf(fields, object))
-    metadata["alpenglow." + key] = value;
+    records["alpenglow." + key] = value;
+  return records;
 }
 
 template <typename Object>
@@ -111,8 +113,7 @@ std::string TextOfModels(const Scene& scene, const std::stop_token& stop) {
   return fmt::format("{} elevation models, hash {}", files.size(), Fingerprint(files));
 }
 
-std::string TerrainText(const Scene& scene, const FileHashes& hashes) {
-  const TerrainSource& terrain = scene.terrain;
+std::string TerrainText(const TerrainSource& terrain, const FileHashes& hashes) {
   switch (terrain.kind) {
     case TerrainSource::Kind::kProceduralMountains:
       return !terrain.centre
@@ -169,52 +170,82 @@ std::string LayerText(const MediumLayer& layer) {
                      layer.scale_height_m, layer.albedo, PhaseText(layer.phase));
 }
 
-/// Returns every value of [ground].
-Metadata KeysOf(const GroundCover& ground) {
-  Metadata values = ValuesOf(GroundFields(), ground);
+// RecordOf returns the record of an object of a table of scene.toml. Each table of ForEachTable has
+// one: SceneMetadata does not compile without it. `number` counts the objects of a table.
+
+Metadata RecordOf(const TomlFields<Scene>& fields, const Scene& scene, std::size_t /*number*/,
+                  const FileHashes& /*hashes*/) {
+  return NamedRecordsOf(fields, scene);
+}
+
+Metadata RecordOf(const TomlFields<Camera>& fields, const Camera& camera, std::size_t /*number*/,
+                  const FileHashes& /*hashes*/) {
+  Metadata records = NamedRecordsOf(fields, camera);
+  records["alpenglow.camera_height"] = HeightText(camera.height);
+  records["alpenglow.heading_deg"] = DegreesText(camera.heading_rad);
+  records["alpenglow.pitch_deg"] = DegreesText(camera.pitch_rad);
+  records["alpenglow.roll_deg"] = DegreesText(camera.roll_rad);
+  records["alpenglow.fov_deg"] = DegreesText(camera.fov_rad);
+  if (!camera.lens) return records;
+  const ThinLens& lens = *camera.lens;
+  records["alpenglow.lens"] =
+      fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
+                  lens.focus_m, lens.blades, DegreesText(lens.blade_rotation_rad));
+  return records;
+}
+
+Metadata RecordOf(const TomlFields<TerrainSource>& fields, const TerrainSource& terrain,
+                  std::size_t /*number*/, const FileHashes& hashes) {
+  Metadata records{
+      {"alpenglow.terrain", TerrainText(terrain, hashes) + NamedText(fields, terrain)}};
+  if (!terrain.colour.empty())
+    records["alpenglow.terrain_colour"] = hashes.names_and_hashes.at(terrain.colour);
+  if (!terrain.land_cover.empty())
+    records["alpenglow.land_cover"] = hashes.names_and_hashes.at(terrain.land_cover);
+  return records;
+}
+
+Metadata RecordOf(const TomlFields<GroundCover>& fields, const GroundCover& ground,
+                  std::size_t /*number*/, const FileHashes& /*hashes*/) {
+  Metadata values = ValuesOf(fields, ground);
   values["cover"] = fmt::format("{}", static_cast<int>(ground.kind));
   values.erase("grain_diameter_mm");
   values["grain_diameter_m"] = fmt::format("{}", ground.grain_diameter_m);
-  return values;
+  return {{"alpenglow.ground_hash", Fingerprint(values)}};
 }
 
-/// Returns every value of a [[volume]].
-/// @param grid  names and hashes of its grid's files.
-Metadata KeysOf(const Volume& volume, const std::string& grid) {
-  Metadata values = ValuesOf(VolumeFields(), volume);
+Metadata RecordOf(const TomlFields<Light>& fields, const Light& light, std::size_t number,
+                  const FileHashes& hashes) {
+  return {{fmt::format("alpenglow.light_{}", number),
+           LightText(light, hashes) + NamedText(fields, light)}};
+}
+
+Metadata RecordOf(const TomlFields<MediumLayer>& fields, const MediumLayer& layer,
+                  std::size_t /*number*/, const FileHashes& /*hashes*/) {
+  return {{"alpenglow." + fields.name, LayerText(layer) + NamedText(fields, layer)}};
+}
+
+Metadata RecordOf(const TomlFields<Volume>& fields, const Volume& volume, std::size_t number,
+                  const FileHashes& hashes) {
+  Metadata values = ValuesOf(fields, volume);
   values["height"] = HeightText(volume.height);
   values["phase"] = PhaseText(volume.phase);
   if (volume.grid_size) values["grid_size"] = fmt::format("{}", fmt::join(*volume.grid_size, " "));
-  values["grid"] = grid;
-  return values;
+  values["grid"] = hashes.grids.at(number);
+  return {{fmt::format("alpenglow.volume_{}_hash", number), Fingerprint(values)}};
 }
 
-/// Adds the air of a scene, and what lies in it.
-void AddAirOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) {
+/// Returns the records of the scene's own members: place, air and light pollution.
+Metadata OwnRecordsOf(const Scene& scene) {
   const Medium& medium = scene.medium;
-  metadata["alpenglow.atmosphere"] = medium.name;
-  metadata["alpenglow.atmosphere_hash"] = fmt::format("{:016x}", MediumHash(medium));
-  metadata["alpenglow.refraction"] = NameOf(medium.refraction);
+  Metadata records{{"alpenglow.latitude_deg", fmt::format("{}", scene.place.latitude_deg)},
+                   {"alpenglow.longitude_deg", fmt::format("{}", scene.place.longitude_deg)},
+                   {"alpenglow.atmosphere", medium.name},
+                   {"alpenglow.atmosphere_hash", fmt::format("{:016x}", MediumHash(medium))},
+                   {"alpenglow.refraction", NameOf(medium.refraction)}};
   if (scene.town_zenith)
-    metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
-  for (const MediumLayer& layer : scene.layers)
-    metadata["alpenglow." + LayerFields().name] =
-        LayerText(layer) + NamedText(LayerFields(), layer);
-  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-    metadata[fmt::format("alpenglow.volume_{}_hash", i)] =
-        Fingerprint(KeysOf(scene.volumes[i], hashes.grids.at(i)));
-  }
-}
-
-/// Adds terrain and ground cover.
-void AddGroundOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) {
-  const TerrainSource& terrain = scene.terrain;
-  metadata["alpenglow.terrain"] = TerrainText(scene, hashes) + NamedText(TerrainFields(), terrain);
-  if (!terrain.colour.empty())
-    metadata["alpenglow.terrain_colour"] = hashes.names_and_hashes.at(terrain.colour);
-  if (!terrain.land_cover.empty())
-    metadata["alpenglow.land_cover"] = hashes.names_and_hashes.at(terrain.land_cover);
-  metadata["alpenglow.ground_hash"] = Fingerprint(KeysOf(scene.ground));
+    records["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
+  return records;
 }
 
 }  // namespace
@@ -242,30 +273,14 @@ FileHashes HashFilesOf(const Scene& scene, const std::stop_token& stop) {
 }
 
 Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes) {
-  const Camera& camera = scene.camera;
-  Metadata metadata = {{"Software", ProducerText()},
-                       {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
-                       {"alpenglow.latitude_deg", fmt::format("{}", scene.place.latitude_deg)},
-                       {"alpenglow.longitude_deg", fmt::format("{}", scene.place.longitude_deg)},
-                       {"alpenglow.camera_height", HeightText(camera.height)},
-                       {"alpenglow.heading_deg", DegreesText(camera.heading_rad)},
-                       {"alpenglow.pitch_deg", DegreesText(camera.pitch_rad)},
-                       {"alpenglow.roll_deg", DegreesText(camera.roll_rad)},
-                       {"alpenglow.fov_deg", DegreesText(camera.fov_rad)}};
-  AddAirOf(scene, hashes, metadata);
-  AddGroundOf(scene, hashes, metadata);
-  if (camera.lens) {
-    const ThinLens& lens = *camera.lens;
-    metadata["alpenglow.lens"] =
-        fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
-                    lens.focus_m, lens.blades, DegreesText(lens.blade_rotation_rad));
-  }
-  AddNamedValues(CameraFields(), camera, metadata);
-  for (const TomlFields<Scene>& fields : TablesOfScene()) AddNamedValues(fields, scene, metadata);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    metadata[fmt::format("alpenglow.light_{}", i)] =
-        LightText(scene.lights[i], hashes) + NamedText(LightFields(), scene.lights[i]);
-  }
+  Metadata metadata{{"Software", ProducerText()},
+                    {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"}};
+  metadata.merge(OwnRecordsOf(scene));
+  ForEachTable([&](const auto& fields, const auto& objects_of) {
+    std::size_t number = 0;
+    for (const auto& object : objects_of(scene))
+      metadata.merge(RecordOf(fields, object, number++, hashes));
+  });
   return metadata;
 }
 

@@ -287,10 +287,10 @@ TEST(Scene, PolesAndTheDateLineArePlaces) {
 /// Returns the example of the manual, which has every key.
 std::string ExampleOfFields() {
   std::string example;
-  for (const SceneSection& section : SectionsOfScene()) {
+  ForEachTable([&](const auto& section, const auto&) {
     std::string lines;
     bool has_effect = false;
-    for (const TomlKey& key : section.keys) {
+    for (const TomlKey& key : section.Keys()) {
       lines += tests::ExampleLine(key);
       has_effect = has_effect || !key.example.starts_with("# ");
     }
@@ -298,20 +298,20 @@ std::string ExampleOfFields() {
         fmt::format(fmt::runtime(section.is_list ? "[[{}]]" : "[{}]"), section.name);
     example += (example.empty() ? "" : "\n") +
                tests::CommentedLine((has_effect ? "" : "# ") + name, section.text) + lines;
-  }
+  });
   return example;
 }
 
 TEST(Scene, TheManualHasTheExampleOfTheFields) { EXPECT_EQ(Manual(), ExampleOfFields()); }
 
 TEST(Scene, EveryKeyRefusesValuesThatItDoesNotAccept) {
-  for (const SceneSection& section : SectionsOfScene()) {
+  ForEachTable([](const auto& section, const auto&) {
     const std::string head = section.name == "place" ? "" : kPlace;
     const std::string table =
         fmt::format(fmt::runtime(section.is_list ? "[[{}]]\n" : "[{}]\n"), section.name);
     const std::string path = section.name + (section.is_list ? "[0]." : ".");
     const int line = head.empty() ? 2 : 5;
-    for (const TomlKey& key : section.keys) {
+    for (const TomlKey& key : section.Keys()) {
       for (const auto& [value, fault] : tests::RefusedValues(key, path + key.key)) {
         EXPECT_EQ(FaultOf(fmt::format("{}{}{} = {}\n", head, table, key.key, value)),
                   fmt::format("s.toml:{}: {}", line, fault));
@@ -320,7 +320,7 @@ TEST(Scene, EveryKeyRefusesValuesThatItDoesNotAccept) {
                 fmt::format("s.toml:{}: unknown key {}{}q; did you mean {}?", line, path, key.key,
                             key.key));
     }
-  }
+  });
 }
 
 /// Expects that each text is refused with one line that contains the message.

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <functional>
+#include <set>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -606,6 +607,7 @@ const std::vector<ChangedKey>& ChangedLights() {
       {"[[light]]\nlatitude = 46.5\nintensity_cd = 9\n", "longitude = 8", "longitude = 9"},
       {"[[light]]\nlatitude = 46.5\nlongitude = 8\n", "intensity_cd = 9", "intensity_cd = 10"},
       {"[[light]]\nlatitude = 46.5\nlongitude = 8\n", "ies = 'one'", "ies = 'two'"},
+      {kPoint, "type = 'point'", "type = 'spot'\ncone = [10, 20]"},
       {kPoint, "", "above_ground_m = 3"},
       {kPoint, "above_ground_m = 3", "height_m = 3"},
       {kPoint, "", "temperature_k = 3001"},
@@ -623,6 +625,7 @@ const std::vector<ChangedKey>& ChangedLights() {
 const std::vector<ChangedKey>& ChangedAir() {
   static const std::vector<ChangedKey> kKeys{
       {"[atmosphere]\n", "preset = 'earth'", "preset = 'hazy'"},
+      {"[atmosphere]\n", "preset = 'earth'", "file = 'mars.toml'"},
       {"", "", "[night]\nbortle = 4"},
       {"[night]\n", "bortle = 4", "bortle = 5"},
       {"[night]\n", "zenith_mag_per_arcsec2 = 20", "zenith_mag_per_arcsec2 = 21"},
@@ -669,8 +672,14 @@ const std::vector<ChangedKey>& ChangedVolumes() {
   return kKeys;
 }
 
+std::vector<std::vector<ChangedKey>> AllChanges() {
+  return {ChangedPlacesAndCameras(), ChangedGrounds(), ChangedLights(), ChangedAir(),
+          ChangedVolumes()};
+}
+
 TEST_F(SeriesRun, ResumeRendersAgainAfterAnyChangeOfTheScene) {
   for (const char* name : {"one", "two"}) WriteText(folder_ / name, name);
+  WriteText(folder_ / "mars.toml", "preset = 'mars'\n");
   const auto settings = [&](const ChangedKey& key, const char* value) {
     const std::string text = std::string(key.section) + value + "\n";
     const bool has_place = text.find("[place]") != std::string::npos;
@@ -680,8 +689,7 @@ TEST_F(SeriesRun, ResumeRendersAgainAfterAnyChangeOfTheScene) {
   SeriesSource source = Source();
   SeriesOutput output = Output();
   output.resume = true;
-  for (const auto& keys : {ChangedPlacesAndCameras(), ChangedGrounds(), ChangedLights(),
-                           ChangedAir(), ChangedVolumes()}) {
+  for (const auto& keys : AllChanges()) {
     for (const ChangedKey& key : keys) {
       const std::string before = Fingerprint(settings(key, key.before));
       EXPECT_EQ(Fingerprint(settings(key, key.before)), before) << key.section << key.before;
@@ -696,35 +704,67 @@ TEST_F(SeriesRun, ResumeRendersAgainAfterAnyChangeOfTheScene) {
   }
 }
 
-/// Expects that every member of a table of fields changes the record of a scene.
-/// @param part  returns the object of the table in a scene.
-template <typename Object, typename Part>
-void ExpectRecorded(const TomlFields<Object>& fields, const Scene& scene, const Part& part) {
-  for (const TomlField<Object>& field : fields.fields) {
-    if (!field.member.set || !field.member.get) continue;
-    if (field.key == "zone") continue;  // local times in a list of frames, not pixels
-    Scene other = scene;
-    part(other) = tests::WithAnotherValue(field, part(other));
-    EXPECT_NE(Fingerprint(RecordOf(other)), Fingerprint(RecordOf(scene)))
-        << fields.name << "." << field.key;
-  }
+/// Returns whether two texts of a file have different values of a key.
+bool ChangesKey(const std::string& before, const std::string& after, const std::string& key) {
+  const auto line_of = [&](const std::string& text) {
+    return tests::Between("\n" + text + "\n", "\n" + key + " = ", "\n");
+  };
+  return line_of(before) != line_of(after);
 }
 
-TEST(Manifest, EveryMemberOfTheTablesOfFieldsIsRecorded) {
-  Scene scene = SceneFromToml(
-      "[place]\nlatitude = 46.5\nlongitude = 8\n[fog]\nvisibility_m = 900\n"
-      "scale_height_m = 30\n",
-      "scene.toml", "");
-  scene.lights.resize(1);
-  scene.lights[0].type = Light::Type::kSpot;
-  scene.volumes.resize(1);
-  for (const TomlFields<Scene>& fields : TablesOfScene())
-    ExpectRecorded(fields, scene, [](Scene& of) -> Scene& { return of; });
-  ExpectRecorded(CameraFields(), scene, [](Scene& of) -> Camera& { return of.camera; });
-  ExpectRecorded(GroundFields(), scene, [](Scene& of) -> GroundCover& { return of.ground; });
-  ExpectRecorded(LightFields(), scene, [](Scene& of) -> Light& { return of.lights[0]; });
-  ExpectRecorded(LayerFields(), scene, [](Scene& of) -> MediumLayer& { return of.layers.front(); });
-  ExpectRecorded(VolumeFields(), scene, [](Scene& of) -> Volume& { return of.volumes[0]; });
+// Keys of time and place.zone are not recorded: each frame of a series has its own time.
+TEST(Manifest, ResumeIsTestedWithEveryKeyOfTheScene) {
+  const std::set<std::string> not_recorded{"place.zone", "time.utc", "time.local"};
+  ForEachTable([&](const auto& fields, const auto&) {
+    const std::string name = "[" + fields.name + "]";
+    for (const TomlKey& key : fields.Keys()) {
+      bool is_tested = not_recorded.contains(fields.name + "." + key.key);
+      for (const auto& changes : AllChanges()) {
+        for (const ChangedKey& change : changes) {
+          const std::string before = std::string(change.section) + change.before;
+          const std::string after = std::string(change.section) + change.after;
+          is_tested = is_tested ||
+                      (after.find(name) != std::string::npos && ChangesKey(before, after, key.key));
+        }
+      }
+      EXPECT_TRUE(is_tested) << fields.name << "." << key.key;
+    }
+  });
+}
+
+/// Returns scenes with objects of every table, one with an elevation model and one with a mesh.
+std::vector<Scene> ScenesWithEveryTable(const fs::path& folder) {
+  std::vector<Scene> scenes;
+  for (const char* const terrain : {"dem", "mesh"}) {
+    Scene& scene = scenes.emplace_back(SceneFromToml(
+        fmt::format("[place]\nlatitude = 46.5\nlongitude = 8\n[fog]\nvisibility_m = 900\n"
+                    "scale_height_m = 30\n[terrain]\n{} = 'file'\n",
+                    terrain),
+        "scene.toml", folder));
+    scene.lights.resize(1);
+    scene.lights[0].type = Light::Type::kSpot;
+    scene.volumes.resize(1);
+  }
+  return scenes;
+}
+
+TEST_F(Provenance, EveryMemberOfTheTablesOfFieldsIsRecorded) {
+  WriteText(folder_ / "file", "one");
+  ForEachTable([&](const auto& fields, const auto& objects_of) {
+    for (const auto& field : fields.fields) {
+      if (!field.member.set || !field.member.get) continue;
+      if (field.key == "zone") continue;  // local times in a list of frames, not pixels
+      bool is_recorded = false;
+      for (const Scene& scene : ScenesWithEveryTable(folder_)) {
+        Scene other = scene;
+        ASSERT_FALSE(objects_of(other).empty()) << fields.name;
+        auto& object = objects_of(other).front();
+        object = tests::WithAnotherValue(field, object);
+        is_recorded = is_recorded || Fingerprint(RecordOf(other)) != Fingerprint(RecordOf(scene));
+      }
+      EXPECT_TRUE(is_recorded) << fields.name << "." << field.key;
+    }
+  });
 }
 
 TEST(Manifest, EveryParameterOfAPhaseFunctionIsRecorded) {
