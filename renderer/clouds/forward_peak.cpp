@@ -16,7 +16,7 @@ namespace alpenglow::renderer {
 namespace {
 
 // Angles are uniform in their root, which makes them dense in the peak; depths in their logarithm.
-constexpr std::size_t kAngles = 512, kDepths = 64;
+constexpr std::size_t kAngles = 512, kDepths = ForwardPeak::kDepths;
 constexpr double kShallowest = 1e-3;
 // Degree of the series. Lobes with g = 0.95 have chi_600 = 4e-14; droplets have wider tails of the
 // series, and their peak within a third of a degree is rounded off.
@@ -82,19 +82,56 @@ ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
   });
 }
 
-double ForwardPeak::At(const std::vector<float>& table, double cos_scattering, double depth) {
+namespace {
+
+/// A place between the nodes of an axis.
+struct PeakPlace {
+  std::size_t node;
+  double share;  // of the next node
+};
+
+PeakPlace PlaceOfAngle(double cos_scattering) {
   const double angle = std::acos(std::clamp(cos_scattering, -1.0, 1.0));
-  const double u = std::sqrt(angle / kPi) * (kAngles - 1);
-  const double per_depth = (kDepths - 1) / std::log(kDeepest / kShallowest);
-  const double v = per_depth * std::log(std::clamp(depth, kShallowest, kDeepest) / kShallowest);
-  const auto i = std::min(static_cast<std::size_t>(u), kAngles - 2);
-  const auto j = std::min(static_cast<std::size_t>(v), kDepths - 2);
-  const double across = u - static_cast<double>(i), along = v - static_cast<double>(j);
-  const float* low = &table[i * kDepths + j];
+  const double at = std::sqrt(angle / kPi) * (kAngles - 1);
+  const auto node = std::min(static_cast<std::size_t>(at), kAngles - 2);
+  return {node, at - static_cast<double>(node)};
+}
+
+PeakPlace PlaceOfDepth(double depth) {
+  constexpr double kDeepest = ForwardPeak::kDeepest;
+  static const double per_depth = (kDepths - 1) / std::log(kDeepest / kShallowest);
+  const double at = per_depth * std::log(std::clamp(depth, kShallowest, kDeepest) / kShallowest);
+  const auto node = std::min(static_cast<std::size_t>(at), kDepths - 2);
+  return {node, at - static_cast<double>(node)};
+}
+
+}  // namespace
+
+double ForwardPeak::At(const std::vector<float>& table, double cos_scattering, double depth) {
+  const PeakPlace angle = PlaceOfAngle(cos_scattering), along = PlaceOfDepth(depth);
+  const float* low = &table[angle.node * kDepths + along.node];
   const float* high = low + kDepths;
-  return std::lerp(std::lerp(static_cast<double>(low[0]), static_cast<double>(low[1]), along),
-                   std::lerp(static_cast<double>(high[0]), static_cast<double>(high[1]), along),
-                   across);
+  return std::lerp(
+      std::lerp(static_cast<double>(low[0]), static_cast<double>(low[1]), along.share),
+      std::lerp(static_cast<double>(high[0]), static_cast<double>(high[1]), along.share),
+      angle.share);
+}
+
+ForwardPeak::Angle ForwardPeak::AtAngle(double cos_scattering) const {
+  const PeakPlace angle = PlaceOfAngle(cos_scattering);
+  const float* low = &effective_[angle.node * kDepths];
+  const auto share = static_cast<float>(angle.share);
+  Angle at;
+  for (std::size_t i = 0; i < kDepths; ++i) {
+    at.value_[i] = low[i] + share * (low[i + kDepths] - low[i]);
+  }
+  return at;
+}
+
+double ForwardPeak::Angle::Effective(double depth) const {
+  const PeakPlace along = PlaceOfDepth(depth);
+  return std::lerp(static_cast<double>(value_[along.node]),
+                   static_cast<double>(value_[along.node + 1]), along.share);
 }
 
 }  // namespace alpenglow::renderer

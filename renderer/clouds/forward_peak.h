@@ -19,6 +19,8 @@
 // A beam exp(-(1 - f) tau) times p itself would lose the light that the peak has turned a little.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "atmosphere/medium/phase.h"
@@ -49,6 +51,19 @@ class ForwardPeak {
   }
 
   static constexpr double kDeepest = 200.0;
+  static constexpr std::size_t kDepths = 64;
+
+  /// p_eff of one scattering angle, for many depths.
+  class Angle {
+   public:
+    /// Returns what Effective() returns for the angle, within a millionth of its largest value.
+    [[nodiscard]] double Effective(double depth) const;
+
+   private:
+    friend class ForwardPeak;
+    std::array<float, kDepths> value_{};
+  };
+  [[nodiscard]] Angle AtAngle(double cos_scattering) const;
 
  private:
   [[nodiscard]] static double At(const std::vector<float>& table, double cos_scattering,
