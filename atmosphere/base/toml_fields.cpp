@@ -50,8 +50,10 @@ TomlValue TomlSection::Checked(const TomlKey& key) const {
   std::string text = *TomlTable::Text(key.key);
   if (!type.names.empty() &&
       std::find(type.names.begin(), type.names.end(), text) == type.names.end()) {
+    const auto nearest = NearestName(text, type.names);
     Fail(key.key,
-         fmt::format("{} is \"{}\"; it must be {}", FullName(key.key), text, type.expected));
+         fmt::format("{} is \"{}\"; it must be {}{}", FullName(key.key), text, type.expected,
+                     nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : ""));
   }
   return text;
 }
