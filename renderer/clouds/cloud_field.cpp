@@ -380,6 +380,13 @@ CloudField::CloudField(const CloudLattice& lattice, const CloudSamples& samples)
   });
 }
 
+double CloudField::MostBytes(const CloudLattice& lattice) {
+  double bricks = 1.0;
+  for (const int voxels : lattice.voxels) bricks *= (voxels + kSide - 1) / kSide;
+  constexpr std::size_t kIndexed = sizeof(std::int32_t) + 1 + sizeof(float);
+  return bricks * static_cast<double>(kBrick + kIndexed + sizeof(std::pair<int, BrickValues>));
+}
+
 std::optional<glm::dvec2> CloudField::period_m() const {
   if (!lattice_.is_periodic) return std::nullopt;
   return glm::dvec2(lattice_.size_m());

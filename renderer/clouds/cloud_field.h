@@ -126,6 +126,9 @@ class CloudField {
   /// Throws InputError that states the error.
   CloudField(const CloudLattice& lattice, const CloudSamples& samples);
 
+  /// Returns the memory in which a field of a shape is made, if every brick has cloud [bytes].
+  [[nodiscard]] static double MostBytes(const CloudLattice& lattice);
+
   [[nodiscard]] const CloudLattice& lattice() const { return lattice_; }
   [[nodiscard]] const CloudMatter& matter() const { return matter_; }
   /// Returns the period along x and y; no value for an open field.

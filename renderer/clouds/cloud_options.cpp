@@ -10,12 +10,12 @@
 namespace alpenglow::renderer {
 namespace {
 
-void RequireKey(const char* key, double value, double low, double high) {
-  RequireInRange(value, low, high, fmt::format("clouds.{}", key));
+void RequireKey(const char* key, double value, const std::pair<double, double>& range) {
+  RequireInRange(value, range.first, range.second, fmt::format("clouds.{}", key));
 }
 
 void CheckPeriod(double period_m) {
-  RequireKey("period", period_m, kPeriodStep_m, 32.0 * kPeriodStep_m);
+  RequireKey("period", period_m, CloudRanges::kPeriod_m);
   if (std::fmod(period_m, kPeriodStep_m) != 0.0) {
     throw InputError(
         fmt::format("clouds.period is {}; it must be a multiple of {}", period_m, kPeriodStep_m));
@@ -29,24 +29,28 @@ CloudOptions DefaultCloudOptions(CloudGenus genus) {
   options.genus = genus;
   switch (genus) {
     case CloudGenus::kCumulus:
+      options.wind_m_per_s = {6.0, 0.0};
       break;
     case CloudGenus::kStratocumulus:
       options.cover = 0.8;
       options.base_altitude_m = 900.0;
       options.depth_m = 350.0;
       options.droplet_number_per_cm3 = 100.0;
+      options.wind_m_per_s = {8.0, 0.0};
       break;
     case CloudGenus::kAltocumulus:
       options.cover = 0.6;
       options.base_altitude_m = 4000.0;
       options.depth_m = 200.0;
       options.droplet_number_per_cm3 = 80.0;
+      options.wind_m_per_s = {12.0, 0.0};
       break;
     case CloudGenus::kCirrus:
       options.cover = 0.4;
       options.base_altitude_m = 8000.0;
       options.depth_m = 1200.0;
       options.ice_mg_per_m3 = 40.0;
+      options.wind_m_per_s = {25.0, 0.0};
       break;
   }
   return options;
@@ -57,19 +61,21 @@ CloudGenus CloudGenusNamed(std::string_view name) {
 }
 
 void CheckCloudOptions(const CloudOptions& options) {
-  RequireKey("cover", options.cover, 0.0,
-             options.genus == CloudGenus::kCumulus ? kMostCumulusCover : 1.0);
-  RequireKey("base", options.base_altitude_m, 0.0, 15000.0);
-  RequireKey("depth", options.depth_m, 100.0, 4000.0);
-  if (options.genus == CloudGenus::kCirrus) {
-    RequireKey("ice", options.ice_mg_per_m3, 1.0, 1000.0);
-    RequireKey("crystal_radius", options.crystal_radius_um, 5.0, 200.0);
+  using Ranges = CloudRanges;
+  const bool is_cumulus = options.genus == CloudGenus::kCumulus;
+  RequireKey("cover", options.cover,
+             {Ranges::kCover.first, is_cumulus ? kMostCumulusCover : Ranges::kCover.second});
+  RequireKey("base", options.base_altitude_m, Ranges::kBase_m);
+  RequireKey("depth", options.depth_m, Ranges::kDepth_m);
+  if (IsOfIce(options.genus)) {
+    RequireKey("ice", options.ice_mg_per_m3, Ranges::kIce_mg_per_m3);
+    RequireKey("crystal_radius", options.crystal_radius_um, Ranges::kCrystalRadius_um);
   } else {
-    RequireKey("base", options.base_altitude_m, 0.0, 11000.0);
-    RequireKey("droplets", options.droplet_number_per_cm3, 1.0, 5000.0);
+    RequireKey("base", options.base_altitude_m, {Ranges::kBase_m.first, kHighestWaterBase_m});
+    RequireKey("droplets", options.droplet_number_per_cm3, Ranges::kDroplets_per_cm3);
   }
-  RequireKey("wind.east", options.wind_m_per_s.x, -150.0, 150.0);
-  RequireKey("wind.north", options.wind_m_per_s.y, -150.0, 150.0);
+  RequireKey("wind.east", options.wind_m_per_s.x, Ranges::kWind_m_per_s);
+  RequireKey("wind.north", options.wind_m_per_s.y, Ranges::kWind_m_per_s);
   CheckPeriod(options.period_m);
 }
 

@@ -7,6 +7,9 @@
 // Content and size of the crystals of cirrus: Heymsfield and Platt (1984), J. Atmos. Sci. 41, 846;
 // the extinction is about 1 per km.
 //
+// Winds grow with height as the mean westerlies of middle latitudes do (Peixoto and Oort 1992, Physics
+// of Climate, chapter 7).
+//
 // Cover is the fraction of the sky, seen vertically, with an optical depth above 0.3; for cirrus
 // above 0.03, where cirrus begins to be visible (Sassen and Cho 1992, J. Appl. Meteor. 31, 1275).
 #pragma once
@@ -14,6 +17,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <string_view>
+#include <utility>
 
 #include "atmosphere/base/names.h"
 #include "renderer/layer.h"
@@ -33,19 +37,39 @@ inline constexpr double kPeriodStep_m = 2560.0;
 /// Above this cover, cumulus merge to a deck, which is stratocumulus.
 inline constexpr double kMostCumulusCover = 0.8;
 
+/// Bases of clouds of droplets are at most this high: the standard air of their bases ends there.
+inline constexpr double kHighestWaterBase_m = 11000.0;
+
+/// Least and greatest values of CloudOptions.
+struct CloudRanges {
+  static constexpr std::pair kCover{0.0, 1.0};
+  static constexpr std::pair kBase_m{0.0, 15000.0};
+  static constexpr std::pair kDepth_m{100.0, 4000.0};
+  static constexpr std::pair kDroplets_per_cm3{1.0, 5000.0};
+  static constexpr std::pair kIce_mg_per_m3{1.0, 1000.0};
+  static constexpr std::pair kCrystalRadius_um{5.0, 200.0};
+  static constexpr std::pair kWind_m_per_s{-150.0, 150.0};
+  static constexpr std::pair kPeriod_m{kPeriodStep_m, 32.0 * kPeriodStep_m};
+};
+
 /// A layer of clouds.
 struct CloudOptions {
   CloudGenus genus = CloudGenus::kCumulus;
-  double cover = 0.3;                     // in [0, 1]; of cumulus at most kMostCumulusCover
-  double base_altitude_m = 1200.0;        // in [0, 11000]; of cirrus in [0, 15000]
-  double depth_m = 1500.0;                // from the base to the highest tops, in [100, 4000]
-  double droplet_number_per_cm3 = 250.0;  // in [1, 5000]; cirrus has none
-  double ice_mg_per_m3 = 0.0;             // in [1, 1000] for cirrus; others have none
-  double crystal_radius_um = 35.0;        // effective, in [5, 200]; of cirrus
+  double cover = 0.3;                     // of cumulus at most kMostCumulusCover
+  double base_altitude_m = 1200.0;        // except for cirrus at most kHighestWaterBase_m
+  double depth_m = 1500.0;                // from the base to the highest tops
+  double droplet_number_per_cm3 = 250.0;  // cirrus has none
+  double ice_mg_per_m3 = 0.0;             // of cirrus; others have none
+  double crystal_radius_um = 35.0;        // effective; of cirrus
   std::uint32_t seed = 1;
-  glm::dvec2 wind_m_per_s{0.0};  // east, north; each in [-150, 150]
-  double period_m = 20480.0;     // a multiple of kPeriodStep_m, at most 32 of them
+  glm::dvec2 wind_m_per_s{0.0};  // to the east and to the north
+  double period_m = 20480.0;     // a multiple of kPeriodStep_m
+
+  bool operator==(const CloudOptions&) const = default;
 };
+
+/// Returns whether a genus consists of ice; the others consist of droplets.
+[[nodiscard]] constexpr bool IsOfIce(CloudGenus genus) { return genus == CloudGenus::kCirrus; }
 
 /// Returns the options of a genus that names nothing else.
 [[nodiscard]] CloudOptions DefaultCloudOptions(CloudGenus genus);

@@ -321,5 +321,20 @@ TEST(CloudCover, ParameterGivesTheCover) {
   EXPECT_NEAR(radius, std::sqrt(0.1 * kPeriod * kPeriod / std::numbers::pi), 12.0);
 }
 
+TEST(CloudField, MostBytesBoundTheMemoryOfAFullField) {
+  class Everywhere final : public CloudShape {
+   public:
+    [[nodiscard]] double SignedDepth_m(const glm::dvec3& /*point*/) const override { return 50.0; }
+    [[nodiscard]] bool MayHoldCloud(const glm::dvec3& /*low*/,
+                                    const glm::dvec3& /*high*/) const override {
+      return true;
+    }
+  };
+  const CloudField full(Lattice(), Everywhere(), Matter());
+  // While a field is made its bricks are in memory twice.
+  EXPECT_GE(CloudField::MostBytes(Lattice()), static_cast<double>(full.bytes()));
+  EXPECT_LE(CloudField::MostBytes(Lattice()), 2.5 * static_cast<double>(full.bytes()));
+}
+
 }  // namespace
 }  // namespace alpenglow::renderer
