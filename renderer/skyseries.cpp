@@ -17,6 +17,7 @@
 #include "renderer/camera/track_file.h"
 #include "renderer/camera/track_names.h"
 #include "renderer/scene/places.h"
+#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/manifest.h"
@@ -107,6 +108,7 @@ SeriesPlan PlanOf(const SkyseriesOptions& options) {
   SeriesPlan plan;
   plan.scene = SceneOf(options, track);
   if (options.zone) plan.scene.zone = options.zone;
+  if (options.clouds) plan.scene.clouds = CloudsFromText(*options.clouds);
   const Scene& scene = plan.scene;
   plan.viewpoint = {scene.place, scene.zone, {}, scene.medium.follows_wgs84};
   std::optional<CameraPath>& path = plan.viewpoint.path;

@@ -19,6 +19,7 @@
 #include "renderer/camera/track.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
+#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/series.h"
@@ -50,6 +51,7 @@ struct SkyseriesOptions {
   CommonOptions common;
   std::string scene_file;
   SceneOptions scene;
+  std::optional<std::string> clouds;  // see CloudsFromText; replace those of the scene
   std::optional<std::string> path;
   TrackStyle track;
   TimesText times;
@@ -189,6 +191,12 @@ inline void AddAirOptions(CLI::App& app, SkyseriesOptions& options) {
                  "bruneton2017");
   AddWithoutFile(app, "--bortle", options.scene.bortle,
                  "Light pollution of the night sky: class 1 (dark) to 9 (city)");
+  app.add_option("--clouds", options.clouds,
+                 "Clouds, instead of those of the scene: none, fair (cumulus 0.25), broken "
+                 "(stratocumulus 0.75), high (cirrus 0.5), or layers separated by commas, each a "
+                 "genus and its cover, 0 to 1: \"cumulus 0.3, cirrus 0.5\". Genera are cumulus (at "
+                 "most 0.8), stratocumulus, altocumulus and cirrus")
+      ->check(ReadableBy([](const std::string& text) { (void)CloudsFromText(text); }));
 }
 
 inline void AddDisplayOptions(CLI::App& app, PictureOptionTexts& texts) {

@@ -79,6 +79,15 @@ EyePlacement PlacementOf(const SkyviewOptions& options) {
   return placement;
 }
 
+/// Returns the scene without what is not drawn in flight, and writes a message about it.
+Scene Drawable(Scene scene) {
+  if (scene.clouds.empty()) return scene;
+  Log(fmt::format("skyview: the clouds of {} are not drawn; skyseries draws them\n",
+                  scene.clouds.front().name.substr(0, scene.clouds.front().name.rfind(": "))));
+  scene.clouds.clear();
+  return scene;
+}
+
 UtcTime StartOf(const SkyviewOptions& options, const Scene& scene) {
   if (!options.time && scene.time) return *scene.time;
   Place place = options.place ? PlaceNamed(*options.place).place
@@ -299,7 +308,7 @@ int Run(const SkyviewOptions& options) {
   if (options.video) RequireVideo(*options.video);
   std::optional<Track> flown;  // --path, if it is a track
   if (options.replay && IsTrack(*options.replay)) flown = ReadTrackWithNote(*options.replay);
-  const Scene scene = SceneOf(options, flown);
+  const Scene scene = Drawable(SceneOf(options, flown));
   const UtcTime start = StartOf(options, scene);
   std::optional<CameraPath> path;
   if (options.replay && !flown) path = ReadFlight(*options.replay);

@@ -15,6 +15,7 @@
 #include "atmosphere/base/toml_table.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
+#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_fields.h"
 #include "renderer/scene/volume_file.h"
 
@@ -424,6 +425,91 @@ Volume VolumeOf(const TomlTable& entry, const fs::path& folder, std::size_t band
   return volume;
 }
 
+/// Refuses values of a cloud that their ranges alone allow.
+void CheckCloudKeys(const TomlSection& table) {
+  const std::optional<double> seed = table.Number("seed");
+  if (seed && *seed != std::floor(*seed)) {
+    table.Fail("seed",
+               fmt::format("{} is {}; it must be a whole number", table.FullName("seed"), *seed));
+  }
+  const std::optional<std::vector<double>> wind = table.Numbers("wind_m_per_s");
+  if (wind && wind->size() != 2) {
+    table.Fail("wind_m_per_s",
+               fmt::format("{} has {} values; it must have two, to the east and to the north",
+                           table.FullName("wind_m_per_s"), wind->size()));
+  }
+  if (table.Has("latitude") != table.Has("longitude")) {
+    const std::string missing = table.Has("latitude") ? "longitude" : "latitude";
+    table.Fail(missing, fmt::format("{} is missing; the middle of a grid has both",
+                                    table.FullName(missing)));
+  }
+}
+
+/// Refuses what the genus of a layer of clouds excludes.
+void CheckGenusKeys(const TomlSection& table, const CloudOptions& options) {
+  const std::string genus = kCloudGenusNames.Of(options.genus);
+  if (IsOfIce(options.genus)) {
+    RefuseKeys(table, {"droplets_per_cm3"}, "is for clouds of droplets; cirrus is of ice");
+  } else {
+    RefuseKeys(table, {"ice_mg_per_m3", "crystal_radius_um"},
+               fmt::format("is for cirrus; {} is of droplets", genus));
+  }
+  if (options.genus == CloudGenus::kCumulus && options.cover > kMostCumulusCover) {
+    table.Fail("cover", fmt::format("{} is {}; cumulus cover {} at most, and stratocumulus more",
+                                    table.FullName("cover"), options.cover, kMostCumulusCover));
+  }
+  if (!IsOfIce(options.genus) && options.base_altitude_m > kHighestWaterBase_m) {
+    table.Fail("base_height_m",
+               fmt::format("{} is {}; that of {} is at most {}", table.FullName("base_height_m"),
+                           options.base_altitude_m, genus, kHighestWaterBase_m));
+  }
+  if (std::fmod(options.period_m, kPeriodStep_m) != 0.0) {
+    table.Fail("period_m",
+               fmt::format("{} is {}; it must be a multiple of {}", table.FullName("period_m"),
+                           options.period_m, kPeriodStep_m));
+  }
+}
+
+/// @param number  of the table, from 0.
+SceneCloud CloudOf(const TomlTable& entry, const fs::path& folder, std::size_t number) {
+  const TomlSection table(entry, CloudFields().Keys());
+  const std::optional<fs::path> grid = FileNamedBy(table, "grid", folder);
+  if (!grid) Require(table, "genus");
+  CheckCloudKeys(table);
+  SceneCloud cloud;
+  if (const auto genus = table.Text("genus"))
+    cloud.options = DefaultCloudOptions(*kCloudGenusNames.Find(*genus));
+  cloud.options.seed = static_cast<std::uint32_t>(number) + 1U;
+  if (grid) cloud.options.wind_m_per_s = {0.0, 0.0};
+  CloudFields().Read(table, cloud);
+  if (!grid) {
+    RefuseKeys(table, {"repeats", "latitude", "longitude"}, "is for a grid");
+    CheckGenusKeys(table, cloud.options);
+    return cloud;
+  }
+  RefuseKeys(table,
+             {"cover", "base_height_m", "depth_m", "droplets_per_cm3", "ice_mg_per_m3",
+              "crystal_radius_um", "seed", "period_m"},
+             "is for clouds without a grid");
+  cloud.grid = *grid;
+  if (const auto latitude = table.Number("latitude"))
+    cloud.middle = CheckedPlace({*latitude, *table.Number("longitude"), 0.0});
+  return cloud;
+}
+
+/// Returns the clouds with their names in messages.
+std::vector<SceneCloud> CloudsOf(const TomlTable& document, const fs::path& folder,
+                                 const std::string& origin) {
+  std::vector<SceneCloud> clouds;
+  for (const TomlTable& entry : document.Tables("cloud")) {
+    SceneCloud cloud = CloudOf(entry, folder, clouds.size());
+    cloud.name = fmt::format("{}: cloud[{}]", origin, clouds.size());
+    clouds.push_back(std::move(cloud));
+  }
+  RequireCloudsFit(clouds, MemoryOfMachine());
+  return clouds;
+}
+
 }  // namespace
 
 bool Camera::IsPanorama() const { return fov_rad > kPi; }
@@ -468,6 +554,7 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
   for (const TomlTable& volume : document.Tables(VolumeFields().name)) {
     scene.volumes.push_back(VolumeOf(volume, folder, scene.medium.wavelengths_nm.size()));
   }
+  scene.clouds = CloudsOf(document, folder, origin);
   return scene;
 }
 

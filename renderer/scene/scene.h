@@ -14,6 +14,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
+#include "renderer/clouds/cloud_options.h"
 #include "renderer/elevation/elevation.h"
 #include "renderer/elevation/mesh.h"
 #include "renderer/scene/volume_grid.h"
@@ -161,6 +162,15 @@ struct Volume {
   PhaseFunction phase;
 };
 
+/// A layer of clouds over the whole scene, or a field of others; see CloudFieldsOf.
+struct SceneCloud {
+  std::string name;             // in messages: "scene.toml: cloud[0]"
+  CloudOptions options;         // of a grid: the genus and the wind alone
+  std::filesystem::path grid;   // see ReadCloudGrid; empty: a layer of the genus
+  bool repeats = false;         // a grid repeats beyond its sides
+  std::optional<Place> middle;  // of a grid; empty: the place of the scene
+};
+
 struct Scene {
   Place place;                      // with height 0
   std::optional<std::string> zone;  // IANA name
@@ -172,6 +182,7 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<MediumLayer> layers;  // at most one
   std::vector<Volume> volumes;
+  std::vector<SceneCloud> clouds;
   /// Brightness of the zenith on a moonless night with light pollution [V magnitudes per square
   /// arcsecond]; empty: no light pollution.
   std::optional<double> town_zenith;

@@ -2,6 +2,7 @@
 #include "renderer/scene/scene_fields.h"
 
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "atmosphere/astronomy/night_sky.h"
@@ -50,6 +51,33 @@ TomlMember<Object> Three(std::array<double, 3> Object::*member, std::pair<double
     return TomlValue(std::vector<double>(values.begin(), values.end()));
   };
   return three;
+}
+
+/// A whole number as the seed of clouds.
+TomlMember<SceneCloud> CloudSeed() {
+  TomlMember<SceneCloud> seed =
+      Number<SceneCloud>({0.0, static_cast<double>(std::numeric_limits<std::uint32_t>::max())});
+  seed.set = [](const TomlValue& value, SceneCloud& cloud) {
+    cloud.options.seed = static_cast<std::uint32_t>(std::get<double>(value));
+  };
+  seed.get = [](const SceneCloud& cloud) {
+    return TomlValue(static_cast<double>(cloud.options.seed));
+  };
+  return seed;
+}
+
+/// A list of two numbers, to the east and to the north.
+TomlMember<SceneCloud> CloudWind() {
+  TomlMember<SceneCloud> wind = Numbers<SceneCloud>(CloudRanges::kWind_m_per_s);
+  wind.set = [](const TomlValue& value, SceneCloud& cloud) {
+    const auto& list = std::get<std::vector<double>>(value);
+    cloud.options.wind_m_per_s = {list.front(), list.back()};
+  };
+  wind.get = [](const SceneCloud& cloud) {
+    const glm::dvec2& velocity = cloud.options.wind_m_per_s;
+    return TomlValue(std::vector<double>{velocity.x, velocity.y});
+  };
+  return wind;
 }
 
 template <typename Object>
@@ -266,6 +294,48 @@ const TomlFields<Volume>& VolumeFields() {
         "micrometres", "", "instead of g", "# 15.0"},
        {"g", Number<Volume>({-0.99, 0.99}), "", "", "of Henyey and Greenstein", "0.5"}},
       "smoke, a bank of fog, a glowing gas; any number",
+      /*is_list=*/true};
+  return fields;
+}
+
+const TomlFields<SceneCloud>& CloudFields() {
+  using Ranges = CloudRanges;
+  constexpr auto kOptions = &SceneCloud::options;
+  static const TomlFields<SceneCloud> fields{
+      "cloud",
+      {{"genus", Name(kOptions, &CloudOptions::genus, kCloudGenusNames, OneOfQuoted), "", "",
+        "required without a grid, which is of ice if its genus is cirrus, else of droplets",
+        "\"cumulus\""},
+       {"cover", Number(kOptions, &CloudOptions::cover, Ranges::kCover), "", "",
+        "fraction of the sky, seen vertically; of cumulus at most 0.8", "0.3"},
+       {"base_height_m", Number(kOptions, &CloudOptions::base_altitude_m, Ranges::kBase_m), "m", "",
+        "above the ellipsoid; except for cirrus at most 11000", "1200.0"},
+       {"depth_m", Number(kOptions, &CloudOptions::depth_m, Ranges::kDepth_m), "m", "",
+        "from the base to the highest tops", "1500.0"},
+       {"droplets_per_cm3",
+        Number(kOptions, &CloudOptions::droplet_number_per_cm3, Ranges::kDroplets_per_cm3), "1/cm3",
+        "", "not of cirrus", "250.0"},
+       {"ice_mg_per_m3", Number(kOptions, &CloudOptions::ice_mg_per_m3, Ranges::kIce_mg_per_m3),
+        "mg/m3", "", "of cirrus", "# 40.0"},
+       {"crystal_radius_um",
+        Number(kOptions, &CloudOptions::crystal_radius_um, Ranges::kCrystalRadius_um),
+        "micrometres", "", "effective; of cirrus", "# 35.0"},
+       {"seed", CloudSeed(), "", "", "a whole number; the default is the number of the table", "1"},
+       {"wind_m_per_s", CloudWind(), "m/s", "",
+        "to the east and to the north; a grid is at its place at the time of the scene, and has no "
+        "wind by default",
+        "[6.0, 0.0]"},
+       {"period_m", Number(kOptions, &CloudOptions::period_m, Ranges::kPeriod_m), "m", "",
+        "clouds repeat after it to the east and to the north; a multiple of 2560", "20480.0"},
+       {"grid", Text<SceneCloud>(), "", "",
+        "a field of others (Fields of clouds), instead of cover to seed and period_m",
+        "# \"field.txt\""},
+       {"repeats", Truth(&SceneCloud::repeats), "", "", "a grid repeats beyond its sides",
+        "# true"},
+       {"latitude", Number<SceneCloud>(kLatitudes), "degrees north", "",
+        "of the middle of a grid; the default is the place of the scene", "# 46.5"},
+       {"longitude", Number<SceneCloud>(kLongitudes), "degrees east", "", "", "# 8.0"}},
+      "a layer over the whole scene, with defaults of its genus; any number",
       /*is_list=*/true};
   return fields;
 }

@@ -120,6 +120,7 @@ std::vector<NamedFile> FilesOf(const Scene& scene) {
   for (const Volume& volume : scene.volumes) {
     for (const std::filesystem::path& file : FilesOf(volume)) add("volume.grid", file);
   }
+  for (const SceneCloud& cloud : scene.clouds) add("cloud.grid", cloud.grid);
   return files;
 }
 

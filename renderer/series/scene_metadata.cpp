@@ -15,7 +15,9 @@
 #include "atmosphere/medium/medium_fields.h"
 #include "atmosphere/medium/phase_forms.h"
 #include "atmosphere/medium/phase_table.h"
+#include "atmosphere/time_place/time.h"
 #include "lut/cli/program.h"
+#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_fields.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/land_source.h"
@@ -235,7 +237,29 @@ Metadata RecordOf(const TomlFields<Volume>& fields, const Volume& volume, std::s
   return {{fmt::format("alpenglow.volume_{}_hash", number), Fingerprint(values)}};
 }
 
-/// Returns the records of the scene's own members: place, air and light pollution.
+Metadata RecordOf(const TomlFields<SceneCloud>& fields, const SceneCloud& cloud, std::size_t number,
+                  const FileHashes& hashes) {
+  std::string text;
+  for (const auto& [key, value] : ValuesOf(fields, cloud))
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, value);
+  if (!cloud.grid.empty()) text += ", " + hashes.names_and_hashes.at(cloud.grid);
+  if (cloud.middle)
+    text += fmt::format(" at {}, {}", cloud.middle->latitude_deg, cloud.middle->longitude_deg);
+  return {{fmt::format("alpenglow.cloud_{}", number), text}};
+}
+
+/// Returns the time on which the motion of clouds depends: the scene's day, and of grids in the wind
+/// also its time.
+std::string CloudTimeText(const Scene& scene) {
+  const bool has_moving_grid =
+      std::any_of(scene.clouds.begin(), scene.clouds.end(), [](const SceneCloud& cloud) {
+        return !cloud.grid.empty() && cloud.options.wind_m_per_s != glm::dvec2(0.0);
+      });
+  const UtcTime midnight(CloudDayOf(scene), 0.0);
+  return FormatUtc(has_moving_grid ? scene.time.value_or(midnight) : midnight, 9);
+}
+
+/// Returns the records of the scene's own members: place, air, light pollution and time of clouds.
 Metadata OwnRecordsOf(const Scene& scene) {
   const Medium& medium = scene.medium;
   Metadata records{{"alpenglow.latitude_deg", fmt::format("{}", scene.place.latitude_deg)},
@@ -245,6 +269,7 @@ Metadata OwnRecordsOf(const Scene& scene) {
                    {"alpenglow.refraction", NameOf(medium.refraction)}};
   if (scene.town_zenith)
     records["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
+  if (!scene.clouds.empty()) records["alpenglow.cloud_time"] = CloudTimeText(scene);
   return records;
 }
 

@@ -26,8 +26,8 @@ struct FileHashes {
 /// requested.
 [[nodiscard]] FileHashes HashFilesOf(const Scene& scene, const std::stop_token& stop = {});
 
-/// Returns program, place, camera, air, media, terrain, ground and lamps of a scene, except
-/// its time and zone: any other change of the scene that changes the picture changes a value.
+/// Returns program, place, camera, air, media, clouds, terrain, ground and lamps of a scene, except
+/// its time and zone (with clouds, their time is a part): any other change of the scene that changes the picture changes a value.
 /// Numbers are written so that they read back exactly, or hashed.
 /// @param hashes  of the files of this scene, taken when the scene was loaded.
 [[nodiscard]] Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes);

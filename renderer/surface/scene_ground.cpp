@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <utility>
 
 #include "atmosphere/base/error.h"
@@ -13,6 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "renderer/elevation/mesh.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
+#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/visibility/sunlit_path.h"
@@ -218,12 +220,21 @@ std::string Joined(const std::string& one, const std::string& other) {
   return one.empty() || other.empty() ? one + other : one + "; " + other;
 }
 
+/// Throws InputError for clouds whose base is below all ground of a grid.
+void RequireCloudsOver(const ElevationGrid& grid, const Scene& scene) {
+  if (scene.clouds.empty()) return;
+  float lowest_m = std::numeric_limits<float>::infinity();
+  for (const float height_m : grid.height_m) lowest_m = std::fmin(lowest_m, height_m);
+  RequireCloudsOverGround(scene.clouds, static_cast<double>(lowest_m));
+}
+
 LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progress) {
   if (scene.terrain.kind != TerrainSource::Kind::kNone) Prepare(progress, "terrain");
   switch (scene.terrain.kind) {
     case TerrainSource::Kind::kProceduralMountains: {
       const ElevationGrid range =
           ProceduralMountains(scene.terrain.centre.value_or(scene.place), scene.terrain.range_seed);
+      RequireCloudsOver(range, scene);
       Prepare(progress, "mesh");
       return MeshOf(
           range, frame,
@@ -235,6 +246,7 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progr
     case TerrainSource::Kind::kElevationModel: {
       const auto [model, extent, message] = ReadModelInSight(scene);
       RequireEyeOver(extent, model.grid, scene);
+      RequireCloudsOver(model.grid, scene);
       Prepare(progress, "mesh");
       return MeshOf(model.grid, frame, Joined(message, NoteOn(model, scene.terrain.file.string())));
     }

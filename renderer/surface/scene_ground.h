@@ -93,9 +93,9 @@ struct SceneGround {
 [[nodiscard]] Ellipsoid EllipsoidOf(const Medium& medium);
 
 /// Loads or generates the terrain and places the eye above it. Throws InputError for files that
-/// cannot be read, for an eye below the ground (with several surfaces: below the lowest), and for
-/// an eye outside an elevation model that is placed relative to the ground or is too low to see the
-/// model.
+/// cannot be read, for an eye below the ground (with several surfaces: below the lowest), for an eye
+/// outside an elevation model that is placed relative to the ground or is too low to see the model,
+/// and as RequireCloudsOverGround does, unless the terrain is a mesh file.
 /// @param progress  receives the names of the steps, if not null.
 [[nodiscard]] SceneGround LoadGround(const Scene& scene, Progress* progress = nullptr);
 

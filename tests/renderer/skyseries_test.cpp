@@ -111,7 +111,7 @@ TEST_F(Skyseries, HelpAndVersionArePrinted) {
         "--shutter",    "--fps",           "--exposure", "--tone-map", "--look",
         "--resume",     "--contact-sheet", "--latitude", "--dem",      "--white-balance",
         "--atmosphere", "--threads",       "--quiet",    "--progress", "--version",
-        "Example"})
+        "--clouds",     "Example"})
     EXPECT_THAT(outcome.out, HasSubstr(option));
   const Outcome version = Run("--version");
   EXPECT_EQ(version.status, 0);
@@ -285,7 +285,8 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
       "--effects auto --no-shafts;--effects all --max-error 1%;--max-error 0;--max-error 1%%;"
       "--max-error 101%;--from sunrise;--progress loud;--at noon --from sunrise --to sunset;"
       "--from sunrise --to sunset --every 1h --count 3;--keogram k.jpg;--plot p.png;"
-      "--contact-sheet sheet.jpg;--fps 5;--track-speed 5;--latitude 3");
+      "--contact-sheet sheet.jpg;--fps 5;--track-speed 5;--latitude 3;--clouds fog;"
+      "--clouds 'cumulus 0.9';--clouds 'none, fair'");
   int number = 0;  // Each command line starts a program. The sanitizers run every fourth.
   for (std::string options; std::getline(wrong, options, ';'); ++number) {
     if (number % tests::ScaledDown(1, 4) != 0) continue;
@@ -308,6 +309,18 @@ TEST_F(Skyseries, UnknownWordsNameTheNearestKnown) {
       {"time --latitude 3 --longitude 4", "unknown command time; did you mean times?"},
       {"times --latitude 3 --longitude 4 --dates today", "did you mean --date?"}};
   for (const auto& [arguments, message] : cases) ExpectFault(arguments, 2, message);
+}
+
+TEST_F(Skyseries, CloudsOfTheOptionReplaceThoseOfTheScene) {
+  WriteText(folder_ / "cloudy.toml",
+            std::string(kBareSceneText) + "[[cloud]]\ngenus = \"cirrus\"\nperiod_m = 2560\n");
+  const std::string still = " --size 16x9 --samples 1 --out " + InFolder("still.exr");
+  ASSERT_EQ(Run(InFolder("cloudy.toml") + still + " --clouds none").status, 0);
+  EXPECT_EQ(Header().count("alpenglow.cloud_0"), 0U);
+  EXPECT_THAT(Run(InFolder("s.toml") + still + " --resume").error, HasSubstr("1 kept"))
+      << "without clouds it is the same picture";
+  ExpectFault(SmallStill() + " --clouds 'cumulos 0.3'", 2, "did you mean cumulus?");
+  EXPECT_EQ(Run("--list --at noon --clouds 'cumulus 0.3, cirrus 0.5'").status, 0);
 }
 
 TEST_F(Skyseries, AnOptionOfAnotherCommandNamesThatCommand) {

@@ -272,6 +272,18 @@ TEST_F(Skyview, InstrumentsOnAWideViewGiveAMessage) {
   EXPECT_THAT(Run(picture).error, Not(HasSubstr("field of view"))) << "it is all shown";
 }
 
+TEST_F(Skyview, CloudsOfASceneGiveAMessage) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  WriteText(folder_ / "cloudy.toml",
+            std::string(kBareSceneText) + "[[cloud]]\ngenus = \"cirrus\"\n");
+  const std::string options = " --headless --size 64x36 --screenshot " + InFolder("v.png");
+  const std::string file = InFolder("cloudy.toml");
+  const Outcome outcome = Run(file + options);
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("skyview: the clouds of " + file +
+                                       " are not drawn; skyseries draws them\n"));
+}
+
 TEST_F(Skyview, ExplainReportsAPictureOfEdgesOnly) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "s.toml",

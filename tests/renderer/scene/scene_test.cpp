@@ -81,6 +81,8 @@ TEST(Scene, TheManualsSceneHasTheDefaults) {
   EXPECT_EQ(manual.lights.at(0).temperature_k, Light{}.temperature_k);
   EXPECT_EQ(manual.lights.at(0).radius_m, Light{}.radius_m);
   EXPECT_EQ(manual.volumes.at(0).albedo, Volume{}.albedo);
+  ASSERT_EQ(manual.clouds.size(), 1U);
+  EXPECT_EQ(manual.clouds[0].options, DefaultCloudOptions(CloudGenus::kCumulus));
 }
 
 TEST(Scene, EveryKeyOfTheFileIsRead) {
@@ -221,6 +223,52 @@ extinction_per_m = 0.1
   EXPECT_EQ(plume.phase.g, 0.3);
   EXPECT_FALSE(scene.volumes[2].grid_size.has_value());
   EXPECT_EQ(scene.volumes[2].height, (Height{0.0, true})) << "it stands on the ground";
+}
+
+TEST(Scene, CloudsOfTheFileAreRead) {
+  const Scene scene = Read(kPlace + R"(
+[[cloud]]
+genus = "stratocumulus"
+cover = 0.9
+base_height_m = 1500
+depth_m = 400
+droplets_per_cm3 = 150
+seed = 7
+wind_m_per_s = [-3.0, 5.0]
+period_m = 10240
+[[cloud]]
+genus = "cirrus"
+ice_mg_per_m3 = 60
+crystal_radius_um = 40
+[[cloud]]
+grid = "field.txt"
+repeats = true
+latitude = 35.5
+longitude = 138.5
+)");
+  ASSERT_EQ(scene.clouds.size(), 3U);
+  const CloudOptions& deck = scene.clouds[0].options;
+  EXPECT_EQ(deck, (CloudOptions{CloudGenus::kStratocumulus,
+                                0.9,
+                                1500.0,
+                                400.0,
+                                150.0,
+                                0.0,
+                                35.0,
+                                7U,
+                                {-3.0, 5.0},
+                                10240.0}));
+  CloudOptions cirrus = DefaultCloudOptions(CloudGenus::kCirrus);
+  cirrus.ice_mg_per_m3 = 60.0;
+  cirrus.crystal_radius_um = 40.0;
+  cirrus.seed = 2;
+  EXPECT_EQ(scene.clouds[1].options, cirrus) << "other keys are those of the genus";
+  EXPECT_EQ(scene.clouds[1].name, "s.toml: cloud[1]");
+  const SceneCloud& grid = scene.clouds[2];
+  EXPECT_EQ(grid.grid, "folder/field.txt");
+  EXPECT_TRUE(grid.repeats);
+  EXPECT_EQ(grid.middle.value().latitude_deg, 35.5);
+  EXPECT_EQ(grid.options.wind_m_per_s, glm::dvec2(0.0));
 }
 
 TEST(Scene, GroundOfTheFileIsRead) {
@@ -383,6 +431,52 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kPlace + "[terrain]\nmesh = \"\"\n", "terrain.mesh is empty"},
       {kPlace + "[terrain]\ncolour = \"\"\n", "terrain.colour is empty"},
       {kPlace + "[terrain]\nland_cover = \"\"\n", "terrain.land_cover is empty"},
+  });
+}
+
+const std::string kCumulus = kPlace + "[[cloud]]\ngenus = \"cumulus\"\n",
+                  kCirrus = kPlace + "[[cloud]]\ngenus = \"cirrus\"\n",
+                  kGrid = kPlace + "[[cloud]]\ngrid = \"field.txt\"\n";
+
+TEST(Scene, CloudsAreRefusedByKey) {
+  EXPECT_EQ(FaultOf(kCumulus + "cover = 0.8\nperiod_m = 81920\n"), "no fault");
+  EXPECT_EQ(FaultOf(kCirrus + "cover = 1\nbase_height_m = 15000\n"), "no fault");
+  EXPECT_EQ(FaultOf(kGrid + "genus = \"cirrus\"\nwind_m_per_s = [1, 2]\n"), "no fault");
+  ExpectFaults({
+      {kPlace + "[[cloud]]\ncover = 0.5\n", "s.toml:4: cloud[0].genus is missing"},
+      {kPlace + "[[cloud]]\ngenus = \"cumulos\"\n",
+       "s.toml:5: cloud[0].genus is \"cumulos\"; it must be one of \"cumulus\", "
+       "\"stratocumulus\", \"altocumulus\", \"cirrus\"; did you mean \"cumulus\"?"},
+      {kCumulus + "cover = 1.2\n", "s.toml:6: cloud[0].cover is 1.2; it must lie in [0, 1]"},
+      {kCumulus + "cover = 0.9\n",
+       "s.toml:6: cloud[0].cover is 0.9; cumulus cover 0.8 at most, and stratocumulus more"},
+      {kCumulus + "base_height_m = 12000\n",
+       "cloud[0].base_height_m is 12000; that of cumulus is at most 11000"},
+      {kCumulus + "base_height_m = -1\n", "cloud[0].base_height_m is -1; it must lie in"},
+      {kCumulus + "period_m = 5000\n", "cloud[0].period_m is 5000; it must be a multiple of 2560"},
+      {kCumulus + "seed = 1.5\n", "cloud[0].seed is 1.5; it must be a whole number"},
+      {kCumulus + "wind_m_per_s = [1]\n", "cloud[0].wind_m_per_s has 1 values; it must have two"},
+      {kCumulus + "wind_m_per_s = [1, 2, 3]\n", "cloud[0].wind_m_per_s has 3 values"},
+      {kCumulus + "ice_mg_per_m3 = 40\n",
+       "cloud[0].ice_mg_per_m3 is for cirrus; cumulus is of droplets"},
+      {kCumulus + "crystal_radius_um = 40\n", "cloud[0].crystal_radius_um is for cirrus"},
+      {kCirrus + "droplets_per_cm3 = 40\n",
+       "cloud[0].droplets_per_cm3 is for clouds of droplets; cirrus is of ice"},
+      {kCirrus + kCumulus.substr(kPlace.size()) + "cover = 0.81\n", "s.toml:8: cloud[1].cover"},
+      {kCumulus + "repeats = true\n", "cloud[0].repeats is for a grid"},
+      {kCumulus + "latitude = 3\nlongitude = 4\n", "cloud[0].latitude is for a grid"},
+      {kGrid + "latitude = 3\n", "cloud[0].longitude is missing"},
+      {kGrid + "longitude = 3\n", "cloud[0].latitude is missing"},
+      {kGrid + "cover = 0.3\n", "cloud[0].cover is for clouds without a grid"},
+      {kGrid + "base_height_m = 3\n", "cloud[0].base_height_m is for clouds without a grid"},
+      {kGrid + "depth_m = 300\n", "cloud[0].depth_m is for clouds without a grid"},
+      {kGrid + "droplets_per_cm3 = 3\n", "cloud[0].droplets_per_cm3 is for clouds without"},
+      {kGrid + "ice_mg_per_m3 = 3\n", "cloud[0].ice_mg_per_m3 is for clouds without a grid"},
+      {kGrid + "crystal_radius_um = 9\n", "cloud[0].crystal_radius_um is for clouds without"},
+      {kGrid + "seed = 3\n", "cloud[0].seed is for clouds without a grid"},
+      {kGrid + "period_m = 5120\n", "cloud[0].period_m is for clouds without a grid"},
+      {kPlace + "[[cloud]]\ngrid = \"\"\n", "cloud[0].grid is empty"},
+      {kPlace + "[cloud]\ngenus = \"cumulus\"\n", "must be a list of tables"},
   });
 }
 

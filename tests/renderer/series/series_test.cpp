@@ -672,16 +672,66 @@ const std::vector<ChangedKey>& ChangedVolumes() {
   return kKeys;
 }
 
+constexpr char kCumulus[] = "[[cloud]]\ngenus = 'cumulus'\n";
+constexpr char kCirrus[] = "[[cloud]]\ngenus = 'cirrus'\n";
+constexpr char kCloudGrid[] = "[[cloud]]\ngrid = 'one'\n";
+constexpr char kMovingGrid[] = "[[cloud]]\ngrid = 'one'\nwind_m_per_s = [3, 0]\n";
+
+const std::vector<ChangedKey>& ChangedClouds() {
+  static const std::vector<ChangedKey> kKeys{
+      {"", "", kCumulus},
+      {kCumulus, "", kCumulus},
+      {"[[cloud]]\n", "genus = 'cumulus'", "genus = 'stratocumulus'"},
+      {kCumulus, "", "cover = 0.31"},
+      {kCumulus, "", "base_height_m = 1300"},
+      {kCumulus, "", "depth_m = 1600"},
+      {kCumulus, "", "droplets_per_cm3 = 251"},
+      {kCumulus, "", "seed = 2"},
+      {kCumulus, "", "wind_m_per_s = [6, 1]"},
+      {kCumulus, "", "period_m = 10240"},
+      {kCirrus, "", "ice_mg_per_m3 = 41"},
+      {kCirrus, "", "crystal_radius_um = 36"},
+      {"[[cloud]]\n", "grid = 'one'", "grid = 'two'"},
+      {kCloudGrid, "", "genus = 'cirrus'"},
+      {kCloudGrid, "", "repeats = true"},
+      {kCloudGrid, "", "latitude = 46.6\nlongitude = 8"},
+      {kCloudGrid, "latitude = 46.6\nlongitude = 8", "latitude = 46.6\nlongitude = 8.1"},
+      {kCumulus, "[time]\nutc = 'A'", "[time]\nutc = 'B'"},
+      {kMovingGrid, "[time]\nutc = 'A'", "[time]\nutc = 'C'"}};
+  return kKeys;
+}
+
+/// Replaces 'A', 'B' and 'C' by times of one day, of the next, and an hour after the first.
+std::string WithTimes(std::string text) {
+  for (const auto& [name, time] : {std::pair{"'A'", "'2026-06-21T04:00:00Z'"},
+                                   {"'B'", "'2026-06-22T04:00:00Z'"},
+                                   {"'C'", "'2026-06-21T05:00:00Z'"}}) {
+    const std::size_t at = text.find(name);
+    if (at != std::string::npos) text.replace(at, 3, time);
+  }
+  return text;
+}
+
+TEST(Manifest, CloudsDependOnTheDayOfTheSceneAlone) {
+  const auto record = [](const std::string& text) {
+    return Fingerprint(RecordOf(SceneFromToml(
+        WithTimes("[place]\nlatitude = 46.5\nlongitude = 8\n" + text), "scene.toml", "")));
+  };
+  const std::string at = "[time]\nutc = 'A'\n", later = "[time]\nutc = 'C'\n";
+  EXPECT_EQ(record(at + kCumulus), record(later + kCumulus)) << "two times of one day";
+  EXPECT_EQ(record(at), record("")) << "a scene without clouds has no day";
+}
+
 std::vector<std::vector<ChangedKey>> AllChanges() {
   return {ChangedPlacesAndCameras(), ChangedGrounds(), ChangedLights(), ChangedAir(),
-          ChangedVolumes()};
+          ChangedVolumes(),          ChangedClouds()};
 }
 
 TEST_F(SeriesRun, ResumeRendersAgainAfterAnyChangeOfTheScene) {
   for (const char* name : {"one", "two"}) WriteText(folder_ / name, name);
   WriteText(folder_ / "mars.toml", "preset = 'mars'\n");
   const auto settings = [&](const ChangedKey& key, const char* value) {
-    const std::string text = std::string(key.section) + value + "\n";
+    const std::string text = WithTimes(std::string(key.section) + value + "\n");
     const bool has_place = text.find("[place]") != std::string::npos;
     const std::string place = has_place ? "" : "[place]\nlatitude = 46.5\nlongitude = 8\n";
     return RecordOf(SceneFromToml(place + text, "scene.toml", folder_));
@@ -744,6 +794,7 @@ std::vector<Scene> ScenesWithEveryTable(const fs::path& folder) {
     scene.lights.resize(1);
     scene.lights[0].type = Light::Type::kSpot;
     scene.volumes.resize(1);
+    scene.clouds.resize(1);
   }
   return scenes;
 }
@@ -785,13 +836,15 @@ TEST(Manifest, EveryParameterOfAPhaseFunctionIsRecorded) {
 }
 
 TEST_F(Provenance, FingerprintsFollowTheContentOfEveryFile) {
-  for (const char* name : {"dem", "colour", "ies", "raw", "data"}) WriteText(folder_ / name, "one");
+  for (const char* name : {"dem", "colour", "ies", "raw", "data", "field"})
+    WriteText(folder_ / name, "one");
   WriteText(folder_ / "smoke.nhdr",
             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: data\n");
   const Scene scene =
       SceneFromToml(fmt::format("[place]\nlatitude = 46.5\nlongitude = 8\n"
                                 "[terrain]\ndem = 'dem'\ncolour = 'colour'\n{}ies = 'ies'\n"
-                                "{}grid = 'raw'\ngrid_size = [2, 2, 2]\n{}grid = 'smoke.nhdr'\n",
+                                "{}grid = 'raw'\ngrid_size = [2, 2, 2]\n{}grid = 'smoke.nhdr'\n"
+                                "[[cloud]]\ngrid = 'field'\n",
                                 kPoint, kVolume, kVolume),
                     "scene.toml", folder_);
   std::string before = Fingerprint(RecordOf(scene));

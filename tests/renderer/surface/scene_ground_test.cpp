@@ -268,5 +268,16 @@ TEST(GroundHeights, AlongAVerticalAreRelativeToThePoint) {
   EXPECT_NEAR(ground->highest_m, 7.0, 1e-4);
 }
 
+TEST_F(AModel, CloudsWithTheirBaseBelowAllGroundAreRefused) {
+  Scene scene = At(46.5, 8.5);
+  scene.clouds.resize(1);
+  scene.clouds[0].name = "s.toml: cloud[0]";
+  scene.clouds[0].options.base_altitude_m = 501.0;
+  EXPECT_EQ(FaultOf(scene), "no fault");
+  scene.clouds[0].options.base_altitude_m = 499.0;
+  EXPECT_THAT(FaultOf(scene), HasSubstr("s.toml: cloud[0].base_height_m is 499; the lowest ground "
+                                        "of the scene is at 500.0 m"));
+}
+
 }  // namespace
 }  // namespace alpenglow::renderer

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene/scene_clouds.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/time_place/time.h"
+#include "renderer/clouds/cloud_generator.h"
+#include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+using testing::HasSubstr;
+
+/// A folder with "field.txt": 5 x 5 x 3 points, 0.1 km apart from 2 km up, with cloud at the middle.
+class SceneClouds : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    WriteText(folder_ / "field.txt", "5 5 3\n0.1 0.1\n2.0 2.1 2.2\n3 3 2 50 8\n");
+  }
+  [[nodiscard]] Scene Read(const std::string& clouds) const {
+    return SceneFromToml(
+        "[place]\nlatitude = 46.5\nlongitude = 8\n[time]\nutc = \"2026-06-21T04:00:00Z\"\n" +
+            clouds,
+        "s.toml", folder_);
+  }
+  /// Returns the only field of a scene at an instant.
+  [[nodiscard]] CloudField FieldAt(const std::string& clouds, const char* instant) const {
+    const Scene scene = Read(clouds);
+    return CloudFieldsOf(scene, CloudTime_s(scene, ParseInstant(instant))).at(0).field;
+  }
+};
+
+constexpr char kGridText[] = "[[cloud]]\ngrid = \"field.txt\"\n";
+
+TEST_F(SceneClouds, FieldsAreOrderedByTheirBases) {
+  const Scene scene = Read(
+      "[[cloud]]\ngenus = \"cirrus\"\nperiod_m = 2560\n"
+      "[[cloud]]\ngrid = \"field.txt\"\n"
+      "[[cloud]]\ngenus = \"cumulus\"\nperiod_m = 2560\n");
+  const std::vector<SceneCloudField> fields = CloudFieldsOf(scene, 0.0);
+  ASSERT_EQ(fields.size(), 3U);
+  EXPECT_FALSE(fields[0].is_of_ice) << "cumulus";
+  EXPECT_FALSE(fields[1].field.period_m()) << "the grid";
+  EXPECT_TRUE(fields[2].is_of_ice) << "cirrus";
+  EXPECT_LT(fields[0].field.base_altitude_m(), fields[1].field.base_altitude_m());
+  EXPECT_LT(fields[1].field.base_altitude_m(), fields[2].field.base_altitude_m());
+}
+
+TEST_F(SceneClouds, AGenusIsThatOfTheGenerator) {
+  const Scene scene = Read(
+      "[[cloud]]\ngenus = \"altocumulus\"\nperiod_m = 2560\nseed = 5\nwind_m_per_s = [9, 2]\n");
+  const CloudField field = CloudFieldsOf(scene, 1000.0).at(0).field;
+  const CloudField made = MakeCloudField(scene.clouds[0].options, 1000.0);
+  EXPECT_EQ(field.hash(), made.hash());
+  // The wind carries the corner by 9000 m and 2000 m, the first of which exceeds three periods.
+  EXPECT_NEAR(field.lattice().origin_m.x, 9000.0 - 3.0 * 2560.0, 1e-9);
+  EXPECT_NEAR(field.lattice().origin_m.y, 2000.0, 1e-9);
+}
+
+TEST_F(SceneClouds, TheMiddleOfAGridIsAtItsPlace) {
+  const char* const now = "2026-06-21T04:00:00Z";
+  const CloudField here = FieldAt(kGridText, now);
+  EXPECT_NEAR(here.Extinction_per_m({0.0, 0.0, 2100.0}), 0.05, 1e-8) << "floats";
+  EXPECT_EQ(here.Extinction_per_m({200.0, 0.0, 2100.0}), 0.0);
+  const CloudField there =
+      FieldAt(std::string(kGridText) + "latitude = 46.51\nlongitude = 8\n", now);
+  const LocalFrame frame(kWgs84, {46.5, 8.0, 0.0});
+  const glm::dvec3 middle = frame.EnuFromGeodetic({46.51, 8.0, 0.0}).xyz;
+  EXPECT_NEAR(middle.y, 1111.8, 0.5) << "a hundredth of a degree of the meridian at 46.5 N";
+  EXPECT_NEAR(there.Extinction_per_m({middle.x, middle.y, 2100.0}), 0.05, 1e-8);
+}
+
+TEST_F(SceneClouds, AGridMovesWithTheWindFromTheTimeOfTheScene) {
+  const std::string windy = std::string(kGridText) + "wind_m_per_s = [2, -1]\n";
+  for (const auto& [instant, seconds] : {std::pair{"2026-06-21T04:00:00Z", 0.0},
+                                         {"2026-06-21T04:05:00Z", 300.0},
+                                         {"2026-06-21T03:50:00Z", -600.0}}) {
+    const CloudField field = FieldAt(windy, instant);
+    // The offset is rounded with times of 4e6 s: 1e-9 of a voxel.
+    EXPECT_NEAR(field.Extinction_per_m({2.0 * seconds, -seconds, 2100.0}), 0.05, 1e-8) << instant;
+  }
+}
+
+TEST_F(SceneClouds, ARepeatingGridHasItsPeriod) {
+  const CloudField field =
+      FieldAt(std::string(kGridText) + "repeats = true\n", "2026-06-21T04:00:00Z");
+  EXPECT_EQ(field.period_m(), glm::dvec2(500.0, 500.0));
+  EXPECT_EQ(
+      CloudFieldsOf(Read(std::string(kGridText) + "genus = \"cirrus\"\n"), 0.0).at(0).is_of_ice,
+      true);
+}
+
+TEST_F(SceneClouds, AFaultyGridIsNamedWithItsKey) {
+  WriteText(folder_ / "field.txt", "5 5 3\n0.1 0.1\n2.0 2.1 2.2\n3 3 2 -50 8\n");
+  const std::string fault = tests::FaultOf([&] { return CloudFieldsOf(Read(kGridText), 0.0); });
+  EXPECT_THAT(fault, testing::StartsWith("s.toml: cloud[0].grid: "));
+  EXPECT_THAT(fault, HasSubstr("field.txt:4: extinction is \"-50\""));
+  const Scene missing = Read("[[cloud]]\ngrid = \"none.txt\"\n");
+  EXPECT_THAT(tests::FaultOf([&] { return CloudFieldsOf(missing, 0.0); }),
+              HasSubstr("s.toml: cloud[0].grid: " + (folder_ / "none.txt").string()));
+}
+
+TEST_F(SceneClouds, TimesAreContinuousAroundTheSceneAndNeverNegative) {
+  const Scene scene = Read("");
+  const auto time_s = [&](const char* instant) {
+    return CloudTime_s(scene, ParseInstant(instant));
+  };
+  const double noon_s = time_s("2026-06-21T12:00:00Z");
+  EXPECT_EQ(time_s("2026-06-21T12:00:05Z") - noon_s, 5.0);
+  EXPECT_EQ(time_s("2026-06-22T12:00:00Z") - noon_s, 86400.0);
+  EXPECT_EQ(time_s("2026-05-03T12:00:00Z") - noon_s, -49.0 * 86400.0);
+  EXPECT_EQ(time_s("2026-08-09T12:00:00Z") - noon_s, 49.0 * 86400.0);
+  for (const char* instant :
+       {"1900-01-01T00:00:00Z", "2025-12-31T23:59:59Z", "2100-12-31T00:00:00Z"}) {
+    EXPECT_GE(time_s(instant), 0.0) << instant;
+    EXPECT_LE(time_s(instant), 8.64e6) << instant;
+  }
+  EXPECT_EQ(CloudDayOf(Scene{}), ParseInstant("2026-06-21T00:00:00Z").modified_julian_day);
+}
+
+TEST(CloudsOfText, PresetsAndGeneraAreLayers) {
+  EXPECT_TRUE(CloudsFromText("none").empty());
+  EXPECT_EQ(CloudsFromText("fair").at(0).options.cover, 0.25);
+  EXPECT_EQ(CloudsFromText("broken").at(0).options.genus, CloudGenus::kStratocumulus);
+  EXPECT_EQ(CloudsFromText("high").at(0).options.genus, CloudGenus::kCirrus);
+  const std::vector<SceneCloud> clouds = CloudsFromText(" cumulus 0.4,cirrus , altocumulus  1 ");
+  ASSERT_EQ(clouds.size(), 3U);
+  CloudOptions cumulus = DefaultCloudOptions(CloudGenus::kCumulus);
+  cumulus.cover = 0.4;
+  EXPECT_EQ(clouds[0].options, cumulus);
+  EXPECT_EQ(clouds[1].options.cover, DefaultCloudOptions(CloudGenus::kCirrus).cover);
+  EXPECT_EQ(clouds[2].options.cover, 1.0);
+  EXPECT_EQ(clouds[2].options.seed, 3U) << "layers of one genus differ";
+  for (const SceneCloud& cloud : clouds) EXPECT_NO_THROW(CheckCloudOptions(cloud.options));
+}
+
+TEST(CloudsOfText, FaultsNameWordAndRange) {
+  for (const auto& [text, fault] : std::vector<std::pair<const char*, const char*>>{
+           {"", "a layer of clouds is empty"},
+           {"fair,", "a layer of clouds is empty"},
+           {"cumulos 0.3", "\"cumulos\" is no genus or preset of clouds; did you mean cumulus?"},
+           {"fiar", "did you mean fair?"},
+           {"xyz", "known: none, fair, broken, high, cumulus, stratocumulus, altocumulus, cirrus"},
+           {"cumulus 0.9", "the cover of cumulus is \"0.9\"; it must be a number in [0, 0.8]"},
+           {"cirrus 1.01", "the cover of cirrus is \"1.01\"; it must be a number in [0, 1]"},
+           {"cirrus -0.1", "\"-0.1\"; it must be a number"},
+           {"cirrus nan", "\"nan\"; it must be a number"},
+           {"cirrus thin", "\"thin\"; it must be a number"},
+           {"cirrus 0.3 0.4", "has 3 words"},
+           {"fair 0.3", "has 2 words"},
+           {"none, fair", "none stands alone"}}) {
+    EXPECT_THAT(tests::FaultOf([text = text] { return CloudsFromText(text); }), HasSubstr(fault))
+        << text;
+  }
+}
+
+TEST(CloudsOfText, LayersThatNeedMoreThanTheMemoryAreRefused) {
+  const std::vector<SceneCloud> clouds = CloudsFromText("fair, high");
+  const auto most = [](const SceneCloud& cloud) {
+    return CloudField::MostBytes(LatticeOf(cloud.options));
+  };
+  const double both = most(clouds[0]) + most(clouds[1]);
+  EXPECT_NO_THROW(RequireCloudsFit(clouds, both));
+  const std::string fault = tests::FaultOf([&] {
+    RequireCloudsFit(clouds, 0.99 * both);
+    return 0;
+  });
+  EXPECT_THAT(fault, HasSubstr("--clouds[1].period_m is 20480 and its depth_m 1200: the clouds up "
+                               "to this layer may need 0.5 GB"));
+  EXPECT_GT(MemoryOfMachine(), 1e8);
+  for (const char* genus : {"cumulus", "stratocumulus", "altocumulus", "cirrus"})
+    EXPECT_LT(most(CloudsFromText(genus).at(0)), 0.34e9) << genus << ": as in the manual";
+}
+
+TEST(CloudsOfText, BasesBelowAllGroundAreRefused) {
+  const std::vector<SceneCloud> clouds = CloudsFromText("high, fair");
+  EXPECT_NO_THROW(RequireCloudsOverGround(clouds, 1200.0));
+  EXPECT_THAT(tests::FaultOf([&] {
+                RequireCloudsOverGround(clouds, 1200.5);
+                return 0;
+              }),
+              HasSubstr("--clouds[1].base_height_m is 1200; the lowest ground of the scene is at "
+                        "1200.5 m"));
+}
+
+}  // namespace
+}  // namespace alpenglow::renderer
