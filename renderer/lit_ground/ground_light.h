@@ -12,6 +12,7 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/lamps/lamp_light.h"
+#include "renderer/lit_clouds/lit_clouds.h"
 #include "renderer/material/band_light.h"
 #include "renderer/media/media_light.h"
 #include "renderer/surface/scene_geometry.h"
@@ -46,7 +47,9 @@ struct GroundParts {
 /// Light sources of the ground.
 struct GroundSources {
   const Lighting& light;
-  const MediaLight* media = nullptr;  // between sun, sky and ground; null: no media
+  // Between sun, sky and ground; null: none.
+  const MediaLight* media = nullptr;
+  const LitClouds* clouds = nullptr;
 };
 
 /// Immutable, safe to share between threads. Refers to the parts of the ground.

@@ -50,8 +50,9 @@ void LitLayer::AddDepthToLight(const glm::dvec3& point, const glm::dvec3& /*to_d
 float LitLayer::SkyLeft(double altitude_m) const { return light_.SkyLeft(altitude_m); }
 
 void LitLayer::ChangeSky(double altitude_m, double cos_up, SkyThroughMedia& sky) const {
-  sky.left = light_.SkyLeft(altitude_m) * sky.left;
-  sky.added = sky.added + light_.OnSurface(altitude_m, cos_up);
+  const float left = light_.SkyLeft(altitude_m);
+  sky.left = left * sky.left;
+  sky.added = left * sky.added + light_.OnSurface(altitude_m, cos_up);
 }
 
 }  // namespace alpenglow::renderer

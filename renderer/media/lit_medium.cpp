@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/media/lit_medium.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace alpenglow::renderer {
@@ -10,6 +11,12 @@ Spectrum MediaSources::SunInAir(const glm::dvec3& point) const {
   if (here.visible_fraction <= 0.0) return Spectrum(bands());
   return static_cast<float>(here.visible_fraction) *
          air.BeamLeft(here.altitude_m, here.mu_s_effective);
+}
+
+SkyThroughMedia SkyThroughMedia::Clear(std::size_t bands) {
+  SkyThroughMedia sky{Spectrum(bands), Spectrum(bands)};
+  std::ranges::fill(sky.left.values(), 1.0F);
+  return sky;
 }
 
 Spectrum LightOnPoint::LitThrough(const SpectrumOf<double>& all_media) const {

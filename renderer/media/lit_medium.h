@@ -63,6 +63,9 @@ class MediumOnRay {
 struct SkyThroughMedia {
   Spectrum left;   // fraction of the irradiance from a clear sky
   Spectrum added;  // irradiance from the media, per unit solar irradiance [1]
+
+  /// Returns the light of a clear sky.
+  [[nodiscard]] static SkyThroughMedia Clear(std::size_t bands);
 };
 
 /// The light in one medium for one position of the sun. Immutable; safe to use from many threads.

@@ -189,12 +189,10 @@ Spectrum MediaLight::BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk
   return left;
 }
 
-SkyThroughMedia MediaLight::SkyOnSurface(double altitude_m, double cos_up) const {
-  const std::size_t bands = state_->media.bands();
-  SkyThroughMedia sky{Spectrum(bands), Spectrum(bands)};
-  std::fill_n(sky.left.values().begin(), bands, 1.0F);
-  for (const auto& medium : state_->lit) medium->ChangeSky(altitude_m, cos_up, sky);
-  return sky;
+SkyThroughMedia MediaLight::SkyOnSurface(double altitude_m, double cos_up,
+                                         SkyThroughMedia above) const {
+  for (const auto& medium : state_->lit) medium->ChangeSky(altitude_m, cos_up, above);
+  return above;
 }
 
 }  // namespace alpenglow::renderer

@@ -45,8 +45,10 @@ class MediaLight {
   [[nodiscard]] Spectrum BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk) const;
 
   /// Returns the skylight on a surface.
-  /// @param cos_up  between the surface's normal and the vertical.
-  [[nodiscard]] SkyThroughMedia SkyOnSurface(double altitude_m, double cos_up) const;
+  /// @param cos_up  between the surface's normal and the vertical. @param above  what arrives from
+  ///     above all media.
+  [[nodiscard]] SkyThroughMedia SkyOnSurface(double altitude_m, double cos_up,
+                                             SkyThroughMedia above) const;
 
  private:
   struct State;

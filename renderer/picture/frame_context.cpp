@@ -81,6 +81,7 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
   }
   LightNight();
   LightMedia();
+  LightClouds(observer.bodies.instant);
   LightTerrain();
   if (Has(Effect::kStars)) AddStars(observer);
   AddSmallDisks();
@@ -142,6 +143,17 @@ void FrameContext::LightMedia() {
   for (std::size_t i = 1; i < lights_.size(); ++i) {
     lights_[i].media = std::make_shared<MediaLight>(media()->media(), geometry, over_ground_->air,
                                                     lights_[i].light, nullptr, MediaEmission::kOff);
+  }
+}
+
+void FrameContext::LightClouds(const UtcTime& instant) {
+  if (!scene_->clouds().HasAny()) return;
+  Prepare(settings_.progress, "light of clouds");
+  for (FrameLight& source : lights_) {
+    const DistantLight& light = source.light.source;
+    source.clouds =
+        std::make_shared<const LitClouds>(scene_->clouds().At(instant, light.direction.seen),
+                                          scene_->geometry(), over_ground_->air, light);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/night_light.h"
 #include "renderer/lamps/lamp_light.h"
+#include "renderer/lit_clouds/lit_clouds.h"
 #include "renderer/media/media_light.h"
 #include "renderer/picture/limb_view.h"
 #include "renderer/picture/prepared_scene.h"
@@ -30,8 +31,13 @@ struct FrameLight {
   Spectrum by_sun;                                 // irradiance relative to the sun's
   std::shared_ptr<const TerrainSunlight> shadows;  // in the air
   std::shared_ptr<const MediaLight> media;         // null: no bodies, and only lamps light layers
+  std::shared_ptr<const LitClouds> clouds = nullptr;  // null: none
 
-  [[nodiscard]] GroundSources ground_sources() const { return {light, media.get()}; }
+  /// Returns the shadow of clouds; null: none.
+  [[nodiscard]] const CloudShadow* cloud_shadow() const {
+    return clouds ? &clouds->shadow() : nullptr;
+  }
+  [[nodiscard]] GroundSources ground_sources() const { return {light, media.get(), clouds.get()}; }
 };
 
 /// Lights of the sky besides the scattered light of sun and moon; null: not visible.
@@ -91,6 +97,8 @@ class FrameContext {
  private:
   void LightNight();
   void LightMedia();
+  /// Finds the clouds of the instant and their light.
+  void LightClouds(const UtcTime& instant);
   /// Computes the terrain's illumination by all lights.
   void LightTerrain();
   void AddStars(const Observer& observer);

@@ -147,7 +147,8 @@ bool AirInterpolationGrid::IsShared(int column, int row) {
 }
 
 std::optional<AirAlongRay> AirInterpolationGrid::Before(const SharedSegmentAir& rays) {
-  if (rays.kind == HitKind::kPlanet || frame_->media() != nullptr) return std::nullopt;
+  const bool has_media = frame_->media() != nullptr || frame_->lights().front().clouds != nullptr;
+  if (rays.kind == HitKind::kPlanet || has_media) return std::nullopt;
   const auto place = frame_->camera().PlaceOf(rays.direction_sum);
   if (!place) return std::nullopt;
   const auto [x, y] = *place;
@@ -198,7 +199,7 @@ void PixelLight::AddNewAir(std::size_t known) {
     const auto shared = around_ != nullptr ? around_->Before(airs_[i]) : std::nullopt;
     if (shared) {
       airs_[i].air = *shared;
-      airs_[i].media = Spectrum(shared->inscatter.size());
+      airs_[i].media = airs_[i].cloud_light = Spectrum(shared->inscatter.size());
     } else {
       AddAir(*frame_, airs_[i]);
     }

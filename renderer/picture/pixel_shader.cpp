@@ -42,7 +42,8 @@ std::optional<Spectrum> PixelShader::LeftOfSpace(double x, double y) const {
   SharedSegmentAir air = SharedSegmentAir::Of(hit, ray.through, *frame_);
   AddAir(*frame_, air);
   const Spectrum left =
-      UnmarchedLayers(*frame_, ray.through, air.length_m()) * air.air.transmittance;
+      air.clouds.DiskLeft() *
+      (UnmarchedLayers(*frame_, ray.through, air.length_m()) * air.air.transmittance);
   return frame_->camera().HasPolariser() ? 0.5F * left : left;
 }
 
@@ -65,7 +66,8 @@ Spectrum PixelShader::DiskFrom(const glm::dvec3& direction, DiskBehind disk) con
   SharedSegmentAir air = SharedSegmentAir::Of(Hit{}, direction, *frame_);
   AddAir(*frame_, air);
   const Spectrum left = UnmarchedLayers(*frame_, direction, air.length_m()) * bare;
-  return (frame_->camera().HasPolariser() ? 0.5F : 1.0F) * (air.air.transmittance * left);
+  const float polarised = frame_->camera().HasPolariser() ? 0.5F : 1.0F;
+  return polarised * air.clouds.DiskLeft() * (air.air.transmittance * left);
 }
 
 PolarisedLight PixelShader::PolarisedGround(const Hit& hit, const CameraRay& ray,
@@ -114,19 +116,21 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   }
   shaded.albedo = Spectrum(frame.scene().medium().wavelengths_nm.size());
   const auto left = [&](double distance_m) {
-    return LeftByBodies(through.pieces, distance_m, through.media.size());
+    return through.clouds.TransmittanceTo(distance_m) *
+           LeftByBodies(through.pieces, distance_m, through.media.size());
   };
   shaded.lamps =
       through.lamp_light + frame.lamps().Seen(near.seen, ray, frame_->camera().PixelAngle(), left);
-  shaded.volumes = through.media;
+  shaded.volumes = through.media + through.layers_left * through.cloud_light;
   shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes;
   if (hit.kind == HitKind::kSky) {
+    const Spectrum disk_left = through.clouds.DiskLeft() * through.layers_left;
     if (!frame.sky_lights().small_sun)
-      shaded.radiance = shaded.radiance +
-                        through.layers_left * SunDiskRadiance(frame, ray.direction, through.air);
+      shaded.radiance =
+          shaded.radiance + disk_left * SunDiskRadiance(frame, ray.direction, through.air);
     if (!frame.sky_lights().small_moon)
-      shaded.radiance = shaded.radiance +
-                        through.layers_left * MoonDiskRadiance(frame, ray.direction, through.air);
+      shaded.radiance =
+          shaded.radiance + disk_left * MoonDiskRadiance(frame, ray.direction, through.air);
     if (night)
       shaded.radiance = shaded.radiance + shaded.transmittance * night->Above(ray.direction);
   } else {

@@ -21,6 +21,7 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/lamps/lamp_light.h"
+#include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/lit_ground/ground_light.h"
 #include "renderer/media/local_media.h"
 #include "renderer/picture/render.h"
@@ -113,6 +114,7 @@ class PreparedScene {
   [[nodiscard]] const BandColour& colour() const { return colour_; }
   [[nodiscard]] const LampLight& lamps() const { return lamps_; }
   [[nodiscard]] const LocalMedia& media() const { return media_; }
+  [[nodiscard]] CloudsByTime& clouds() const { return *clouds_; }
   [[nodiscard]] const SceneGeometry& geometry() const { return geometry_; }
   /// Returns the geometry with fine relief only if the effects include it.
   [[nodiscard]] const SceneGeometry& GeometryWith(EffectSet effects) const {
@@ -154,6 +156,7 @@ class PreparedScene {
   SceneGeometry geometry_, smooth_geometry_;
   std::shared_ptr<const HorizonsOnDemand> horizons_;
   std::shared_ptr<RecentSunlight> sunlight_, moonlight_;
+  std::shared_ptr<CloudsByTime> clouds_;
   GroundMaterial material_;
   std::string terrain_message_;
   AirByEffects air_;

@@ -92,7 +92,7 @@ class AirTo {
  public:
   AirTo(const FrameContext& frame, const FrameLight& source, HitKind kind, const AirRay& through)
       : frame_(frame),
-        sunlight_(*source.shadows),
+        is_broken_(source.shadows->IsBroken() || source.cloud_shadow() != nullptr),
         is_lit_(source.light.shows),
         kind_(kind),
         direction_(through.direction),
@@ -108,13 +108,15 @@ class AirTo {
       ray_.length_m = through.length_m;
       ray_.passes_ground = true;  // terrain may lie below altitude 0
     }
-    if (!sunlight_.IsBroken()) return;
+    if (!is_broken_) return;
     const RayExtent extent =
         ExtentOf(ray_, geometry.radius_m(), frame.scene().medium().atmosphere_height_m);
-    path_ = sunlight_.Along(from, direction_, extent.end_m);
+    path_ = source.shadows->Along(from, direction_, extent.end_m);
+    if (const CloudShadow* shadow = source.cloud_shadow())
+      path_ = shadow->OnRay(path_, from, direction_);
   }
 
-  [[nodiscard]] const SunlitPath* sunlit() const { return sunlight_.IsBroken() ? &path_ : nullptr; }
+  [[nodiscard]] const SunlitPath* sunlit() const { return is_broken_ ? &path_ : nullptr; }
 
   [[nodiscard]] AirAlongRay operator()(double length_m) const {
     const AirOverGround& in = frame_.over_ground();
@@ -134,8 +136,8 @@ class AirTo {
         .higher_orders = frame_.Has(Effect::kMultipleScattering),
         .polarised = frame_.IsPolarised(),
         .nu_seen = nu_seen_};
-    AirAlongRay air = sunlight_.IsBroken() ? in.aerial.Along(ray, path_, sampling)
-                                           : in.aerial.Along(ray, sampling);
+    AirAlongRay air =
+        is_broken_ ? in.aerial.Along(ray, path_, sampling) : in.aerial.Along(ray, sampling);
     if (air.polarised) {
       air.polarised =
           InAxes(*air.polarised, direction_, up_, to_light_, frame_.camera().AxesAt(direction_));
@@ -145,7 +147,7 @@ class AirTo {
 
  private:
   const FrameContext& frame_;
-  const TerrainSunlight& sunlight_;
+  bool is_broken_;  // terrain or clouds may shade the ray
   bool is_lit_;
   HitKind kind_;
   glm::dvec3 direction_, to_light_;
@@ -156,7 +158,9 @@ class AirTo {
 };
 
 /// Returns the light of the air that arrives through media.
-AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& air,
+/// @param air  returns the light of the air up to a distance.
+template <typename Air>
+AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const Air& air,
                          const AirAlongRay& whole) {
   AirAlongRay left = whole;
   left.inscatter = DimmedByMedia(
@@ -175,23 +179,87 @@ AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& a
   return left;
 }
 
+/// Returns the transmittance of media over a distance.
+Spectrum LeftByMedia(const std::vector<MarchedPiece>& pieces, double distance_m,
+                     std::size_t bands) {
+  Spectrum left(bands);
+  std::ranges::fill(left.values(), 1.0F);
+  for (const MarchedPiece& piece : pieces) {
+    if (piece.begin_m >= distance_m) break;
+    const auto share = static_cast<float>(
+        std::min((distance_m - piece.begin_m) / (piece.end_m - piece.begin_m), 1.0));
+    for (std::size_t band = 0; band < bands; ++band)
+      left[band] = std::lerp(left[band], piece.transmittance[band], share);
+  }
+  return left;
+}
+
+/// Returns the air up to a distance, behind media.
+AirAlongRay AirUpto(double distance_m, const std::vector<MarchedPiece>& pieces, const AirTo& air) {
+  const AirAlongRay reached = air(distance_m);
+  if (pieces.empty()) return reached;
+  AirAlongRay left = ThroughMedia(
+      pieces, [&](double m) { return air(std::min(m, distance_m)); }, reached);
+  left.transmittance =
+      LeftByMedia(pieces, distance_m, left.transmittance.size()) * left.transmittance;
+  return left;
+}
+
+/// Puts the air behind clouds. Returns the light of the clouds, per unit solar irradiance [1/sr].
+/// @param pieces  media along the ray. @param lit  the whole air, behind media.
+Spectrum AddClouds(const CloudsOnRay& clouds, const std::vector<MarchedPiece>& pieces,
+                   const AirTo& air, AirAlongRay& lit) {
+  Spectrum light(lit.inscatter.size());
+  std::vector<AirAlongRay> reached;
+  float left = 1.0F;
+  for (const CloudScreen& screen : clouds.screens) {
+    reached.push_back(AirUpto(screen.distance_m, pieces, air));
+    light = light + left * (reached.back().transmittance * screen.radiance);
+    left *= screen.transmittance;
+  }
+  const auto dimmed = [&](const auto& part) {
+    std::size_t next = 0;
+    return clouds.Dimmed(part(lit), [&](double) { return part(reached[next++]); });
+  };
+  lit.inscatter = dimmed([](const AirAlongRay& of) { return of.inscatter; });
+  if (lit.polarised) {
+    lit.polarised = {dimmed([](const AirAlongRay& of) { return of.polarised->q; }),
+                     dimmed([](const AirAlongRay& of) { return of.polarised->u; })};
+  }
+  lit.transmittance = left * lit.transmittance;
+  return light;
+}
+
 /// Adds the light of one source in air and media. The first source also determines the
 /// transmittance and the pieces of media.
 void AddSource(const FrameContext& frame, const FrameLight& source, bool is_first,
                const AirRay& through, SharedSegmentAir& rays) {
+  const glm::dvec3& eye = frame.camera().eye();
   const AirTo air(frame, source, rays.kind, through);
   AirAlongRay lit = air(std::numeric_limits<double>::infinity());
-  if (is_first) rays.media = Spectrum(lit.inscatter.size());
+  if (is_first) rays.media = rays.cloud_light = Spectrum(lit.inscatter.size());
+  MarchedLight marched;
   if (source.media) {
-    MarchedLight marched = source.media->Along(frame.camera().eye(), through.direction,
-                                               through.length_m, air.sunlit());
+    marched = source.media->Along(eye, through.direction, through.length_m, air.sunlit());
     lit = ThroughMedia(marched.pieces, air, lit);
     lit.transmittance = lit.transmittance * marched.transmittance;
-    rays.media = rays.media + marched.radiance;
-    if (is_first) rays.pieces = std::move(marched.pieces);
   }
+  CloudsOnRay clouds;
+  if (source.clouds) {
+    clouds = source.clouds->Along(eye, through.direction, through.length_m);
+    if (source.media) {
+      marched.radiance = clouds.Dimmed(marched.radiance, [&](double distance_m) {
+        return source.media->Along(eye, through.direction, distance_m, air.sunlit()).radiance;
+      });
+    }
+    rays.cloud_light = rays.cloud_light +
+                       source.light.source.irradiance * AddClouds(clouds, marched.pieces, air, lit);
+  }
+  if (source.media) rays.media = rays.media + marched.radiance;
   if (is_first) {
     rays.air = std::move(lit);
+    rays.pieces = std::move(marched.pieces);
+    rays.clouds = std::move(clouds);
     return;
   }
   rays.air.inscatter = rays.air.inscatter + source.by_sun * lit.inscatter;
@@ -281,7 +349,12 @@ void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
                                {through.direction, std::min(length_m, through.length_m)},
                                frame.camera().PixelAngle(), frame.settings().lamps.nodes);
   };
-  rays.lamp_light = DimmedByMedia(rays.pieces, upto, upto(through.length_m), Behind::kBodies);
+  const auto behind_bodies = [&](double length_m) {
+    return DimmedByMedia(
+        rays.pieces, [&](double m) { return upto(std::min(m, length_m)); }, upto(length_m),
+        Behind::kBodies);
+  };
+  rays.lamp_light = rays.clouds.Dimmed(behind_bodies(through.length_m), behind_bodies);
 }
 
 }  // namespace alpenglow::renderer

@@ -35,6 +35,8 @@ struct SharedSegmentAir {
   Spectrum lamp_light{};  // airlight of lamps, W m^-2 sr^-1 nm^-1
   Spectrum media{};       // light of sun and sky scattered by media, W m^-2 sr^-1 nm^-1
   std::vector<MarchedPiece> pieces{};  // pieces of media along the ray
+  Spectrum cloud_light{};              // light of clouds, W m^-2 sr^-1 nm^-1
+  CloudsOnRay clouds{};                // `air` includes their transmittance
 
   [[nodiscard]] double length_m() const {
     return kind == HitKind::kSky ? std::numeric_limits<double>::infinity() : distance_sum_m / rays;

@@ -206,7 +206,7 @@ TEST(MediaLight, ThinFogLeavesTheGroundItsLight) {
   const MediaStage& stage = TheStage();
   const MediaLight lit = stage.Lit({FogMedium(1e-7, 50.0)});
   for (const double cos_up : {1.0, 0.7, 0.0}) {
-    const SkyThroughMedia sky = lit.SkyOnSurface(0.0, cos_up);
+    const SkyThroughMedia sky = lit.SkyOnSurface(0.0, cos_up, SkyThroughMedia::Clear(3));
     for (std::size_t band = 0; band < 3; ++band) {
       EXPECT_NEAR(static_cast<double>(sky.left[band]), 1.0, 1e-4);
       EXPECT_NEAR(static_cast<double>(sky.added[band]), 0.0, 1e-4) << cos_up;
@@ -225,8 +225,8 @@ TEST(MediaLight, WhiteFogOverBlackGroundConservesEnergy) {
   const double mu_s = kToSun.z;
   const Spectrum sun = stage.air.BeamLeft(60.0, mu_s);
   const Spectrum sky = over_black.multiple_scattering().SkyIrradiance(0.0, mu_s);
-  const SkyThroughMedia below = lit.SkyOnSurface(0.0, 1.0);
-  const SkyThroughMedia above = lit.SkyOnSurface(5e4, -1.0);
+  const SkyThroughMedia below = lit.SkyOnSurface(0.0, 1.0, SkyThroughMedia::Clear(3));
+  const SkyThroughMedia above = lit.SkyOnSurface(5e4, -1.0, SkyThroughMedia::Clear(3));
   const Spectrum beam = lit.BeamLeft({0.0, 0.0, 0.0}, kToSun);
   for (std::size_t band = 0; band < 3; ++band) {
     const double in = mu_s * static_cast<double>(sun[band]) + static_cast<double>(sky[band]);

@@ -193,7 +193,8 @@ TEST_F(LayerOnGpu, LeavesAsMuchLightOnTheGroundAsTheRenderer) {
   const std::vector<float> added = both.OnGpu("MediaOnSurface(a[0], a[1])[1]", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double altitude = 1000.0 * double{points[i][0]};
-    const SkyThroughMedia truth = both.renderer.SkyOnSurface(altitude, double{points[i][1]});
+    const SkyThroughMedia truth = both.renderer.SkyOnSurface(
+        altitude, double{points[i][1]}, SkyThroughMedia::Clear(3));
     EXPECT_NEAR(double{sun[i]}, double{both.renderer.BeamLeft({0.0, 0.0, altitude}, kToSun)[1]},
                 1e-3);
     EXPECT_NEAR(double{sky[i]}, double{truth.left[1]}, 1e-4);

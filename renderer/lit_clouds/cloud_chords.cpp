@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/lit_clouds/cloud_chords.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <optional>
+
+#include "renderer/surface/scene_geometry.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+struct Interval {
+  double begin_m, end_m;
+};
+
+/// A ray in the vertical plane of its direction, seen from the centre of the planet.
+struct RayOverSphere {
+  double radius_m;    // of the planet
+  double altitude_m;  // of the origin
+  double mu;          // cosine between direction and vertical at the origin
+
+  /// Returns the part of the line below an altitude; no value if none is.
+  [[nodiscard]] std::optional<Interval> Below(double height_m) const {
+    const double from_centre_m = radius_m + altitude_m;
+    const double half = from_centre_m * mu;
+    // r^2 - (R + h)^2 without cancellation:
+    const double c = (altitude_m - height_m) * (2.0 * radius_m + altitude_m + height_m);
+    const double square = half * half - c;
+    if (square <= 0.0) return std::nullopt;
+    const double root = std::sqrt(square);
+    const double far = half > 0.0 ? -half - root : root - half;
+    const double near = far != 0.0 ? c / far : 0.0;
+    return Interval{std::min(near, far), std::max(near, far)};
+  }
+};
+
+}  // namespace
+
+glm::dvec3 InFlatFrame(const glm::dvec3& point, double planet_radius_m) {
+  const double across_m = std::hypot(point.x, point.y);
+  const double altitude_m = AltitudeOverSphere(point, planet_radius_m);
+  if (across_m < 1e-6) return {point.x, point.y, altitude_m};
+  const double arc_m = planet_radius_m * std::atan2(across_m, planet_radius_m + point.z);
+  const double stretch = arc_m / across_m;
+  return {stretch * point.x, stretch * point.y, altitude_m};
+}
+
+std::vector<CloudChord> ChordsWithin(const AltitudeRange& range, const glm::dvec3& origin,
+                                     const glm::dvec3& direction, double length_m,
+                                     double planet_radius_m) {
+  const glm::dvec3 up = glm::normalize(origin + glm::dvec3(0.0, 0.0, planet_radius_m));
+  const RayOverSphere ray{planet_radius_m, AltitudeOverSphere(origin, planet_radius_m),
+                          glm::dot(direction, up)};
+  std::vector<CloudChord> chords;
+  const auto add = [&](double from_m, double to_m) {
+    const double begin_m = std::max(from_m, 0.0), end_m = std::min(to_m, length_m);
+    if (!(begin_m < end_m)) return;
+    const int pieces = static_cast<int>(std::ceil((end_m - begin_m) / kLongestChord_m));
+    const double step_m = (end_m - begin_m) / pieces;
+    glm::dvec3 start = InFlatFrame(origin + begin_m * direction, planet_radius_m);
+    for (int piece = 0; piece < pieces; ++piece) {
+      const double stop_m = begin_m + (piece + 1) * step_m;
+      const glm::dvec3 stop = InFlatFrame(origin + stop_m * direction, planet_radius_m);
+      const double chord_m = glm::length(stop - start);
+      if (chord_m > 0.0)
+        chords.push_back({stop_m - step_m, stop_m, start, (stop - start) / chord_m, chord_m});
+      start = stop;
+    }
+  };
+  const std::optional<Interval> below_top = ray.Below(range.high_m);
+  if (!below_top) return chords;
+  const std::optional<Interval> below_base = ray.Below(range.low_m);
+  if (!below_base) {
+    add(below_top->begin_m, below_top->end_m);
+  } else {
+    add(below_top->begin_m, below_base->begin_m);
+    add(below_base->end_m, below_top->end_m);
+  }
+  return chords;
+}
+
+}  // namespace alpenglow::renderer

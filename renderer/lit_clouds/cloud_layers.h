@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// The clouds of a scene by time and light: fields with their phase functions and grey solutions.
+#pragma once
+
+#include <deque>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "atmosphere/time_place/time.h"
+#include "renderer/clouds/cloud_light.h"
+#include "renderer/layer.h"
+#include "renderer/scene/scene.h"
+#include "renderer/scene/scene_clouds.h"
+
+namespace alpenglow::renderer {
+
+/// Layers of clouds at one time, from the lowest to the highest base.
+using CloudLayers = std::vector<SceneCloudField>;
+
+/// Layers under one distant light. The light is as high as kLowestCloudSun_deg at least.
+struct SolvedClouds {
+  std::shared_ptr<const CloudLayers> layers;
+  std::vector<CloudLight> light;  // of each layer, over black ground
+};
+
+/// Generates and solves the clouds of a scene on demand, and keeps the last solutions: a frame of a
+/// series is metered in a small picture while the frame before it is developed, and the choice of
+/// effects renders a picture many times. Safe to use from many threads.
+class CloudsByTime {
+ public:
+  explicit CloudsByTime(const Scene& scene) : scene_(scene) {}
+
+  /// Returns whether the scene has clouds.
+  [[nodiscard]] bool HasAny() const;
+
+  /// Returns the layers of a time in a light. Throws InputError as CloudFieldsOf and CloudLight do.
+  /// @param to_light  unit vector in the frame of the scene.
+  [[nodiscard]] std::shared_ptr<const SolvedClouds> At(const UtcTime& time,
+                                                       const glm::dvec3& to_light);
+
+ private:
+  struct Made {
+    double time_s;
+    glm::dvec3 to_light;
+    std::shared_ptr<const SolvedClouds> clouds;
+  };
+  [[nodiscard]] SolvedClouds Solved(double time_s, const glm::dvec3& to_light) const;
+
+  Scene scene_;
+  std::mutex asking_;
+  std::deque<Made> made_;  // oldest first
+};
+
+}  // namespace alpenglow::renderer

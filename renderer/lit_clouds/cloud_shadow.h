@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// The shadows of clouds: on the ground, on other media, and as shafts in the air.
+//
+// Sun maps of all layers (CloudSunMap) give the transmittance of clouds from a point to the light.
+// Along a ray, it multiplies the light that terrain lets through. A path of sunlight describes a
+// partial shade by the height x of the disk over an edge (SunlitPiece); a transmittance T is the
+// height with SunlightOverEdge(x) = T.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "renderer/clouds/cloud_sun_map.h"
+#include "renderer/layer.h"
+#include "renderer/visibility/sunlit_path.h"
+
+namespace alpenglow::renderer {
+
+/// Returns the x in [-1, 1] with SunlightOverEdge(x) = `sunlight`, within 1e-3 of sunlight.
+/// @param sunlight  in [0, 1].
+[[nodiscard]] double EdgeHeightFor(double sunlight);
+
+/// Immutable; safe to use from many threads. Points and rays are in the frame of a scene.
+class CloudShadow {
+ public:
+  /// @param maps  of each layer, for one light.
+  CloudShadow(std::vector<std::shared_ptr<const CloudSunMap>> maps, double highest_cloud_m,
+              double planet_radius_m);
+
+  /// Returns the altitude of the highest cloud [m]; 0 without layers.
+  [[nodiscard]] double highest_cloud_m() const { return highest_cloud_m_; }
+  /// Returns the transmittance of all layers from a point to the light.
+  [[nodiscard]] double Transmittance(const glm::dvec3& point) const;
+
+  /// Returns sunlight on a ray behind terrain and clouds. Samples of the shadow are kShortestStep_m
+  /// apart near the origin, and kStepPerDistance of the distance far away; beyond kReach_m the mean
+  /// of the layers holds.
+  /// @param path  sunlight behind terrain, within finite distances.
+  [[nodiscard]] SunlitPath OnRay(const SunlitPath& path, const glm::dvec3& origin,
+                                 const glm::dvec3& direction) const;
+
+  static constexpr double kShortestStep_m = 50.0, kStepPerDistance = 0.02, kReach_m = 120e3;
+
+ private:
+  std::vector<std::shared_ptr<const CloudSunMap>> maps_;
+  double highest_cloud_m_, radius_m_;
+  double mean_transmittance_ = 1.0;
+};
+
+}  // namespace alpenglow::renderer

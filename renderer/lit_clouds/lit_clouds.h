@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// The light of a scene's clouds under one sun or moon: along rays, as shadows, and on the ground.
+//
+// Fields of clouds have grey solutions for unit sources (CloudLight). Here the sources get their
+// colours: the sun's beam in the air at the cloud, the mean skylight above a layer, and the mean light
+// of ground and lower layers below it (layer_exchange.h). Along a ray in chord i, with the
+// transmittance T of nearer clouds and A of the air,
+//
+//   L += T_i A (E_beam sun_i + L_sky sky_i + L_ground ground_i)
+//
+// Clouds stand in the air as screens at the mean distance of their light, which the air in front dims
+// and veils. Not modelled: air inside a cloud that scatters more than once between droplets, skylight
+// that differs with direction or place, and the light of a cloud on the air around it.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lut/multiple_scattering/solved_air.h"
+#include "renderer/illumination/distant_light.h"
+#include "renderer/lit_clouds/cloud_chords.h"
+#include "renderer/lit_clouds/cloud_layers.h"
+#include "renderer/lit_clouds/cloud_shadow.h"
+#include "renderer/lit_clouds/layer_exchange.h"
+#include "renderer/material/band_light.h"
+#include "renderer/media/lit_medium.h"
+#include "renderer/surface/scene_geometry.h"
+
+namespace alpenglow::renderer {
+
+/// Clouds on one chord of a ray, as a screen.
+struct CloudScreen {
+  double distance_m;    // mean distance of the light
+  float transmittance;  // of this screen, with the light in the forward peak
+  Spectrum radiance;    // without air and nearer screens, per unit solar irradiance [1/sr]
+};
+
+/// Clouds along a ray.
+struct CloudsOnRay {
+  std::vector<CloudScreen> screens;  // in order
+  float unscattered = 1.0F;          // transmittance of all for light that is not scattered at all
+
+  /// Returns the transmittance of the screens up to a distance, with the light in the forward peak.
+  [[nodiscard]] float TransmittanceTo(double distance_m) const;
+  /// Returns `unscattered` relative to the transmittance with the forward peak: for the disks of sun
+  /// and moon. It is at most 1.
+  [[nodiscard]] float DiskLeft() const;
+  /// Returns light that increases along the ray, behind the screens.
+  /// @param whole  of the whole ray. @param upto  returns the light up to a distance; it is called
+  ///     for each screen in order.
+  template <typename Upto>
+  [[nodiscard]] Spectrum Dimmed(const Spectrum& whole, const Upto& upto) const;
+};
+
+template <typename Upto>
+Spectrum CloudsOnRay::Dimmed(const Spectrum& whole, const Upto& upto) const {
+  Spectrum sum(whole.size()), before(whole.size());
+  float left = 1.0F;
+  for (const CloudScreen& screen : screens) {
+    const Spectrum reached = upto(screen.distance_m);
+    sum = sum + left * (reached + -1.0F * before);
+    before = reached;
+    left *= screen.transmittance;
+  }
+  return sum + left * (whole + -1.0F * before);
+}
+
+/// Immutable; safe to use from many threads. Refers to geometry and air.
+class LitClouds {
+ public:
+  /// @param clouds  solved for the light.
+  LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
+            const SolvedAir& air, const DistantLight& light);
+
+  /// Returns the clouds on a ray. @param length_m  may be infinite.
+  [[nodiscard]] CloudsOnRay Along(const glm::dvec3& origin, const glm::dvec3& direction,
+                                  double length_m) const;
+
+  [[nodiscard]] const CloudShadow& shadow() const { return *shadow_; }
+
+  /// Returns the skylight on a surface: layers above it dim the light of the clear sky and add
+  /// sunlight that they scatter. Both are means over the fields.
+  /// @param cos_up  between the surface's normal and the vertical. @param above  what arrives from
+  ///     above all layers.
+  [[nodiscard]] SkyThroughMedia SkyOnSurface(double altitude_m, double cos_up,
+                                             SkyThroughMedia above) const;
+
+ private:
+  void FindExchange();
+  [[nodiscard]] CloudScreen Screen(std::size_t layer, const CloudRayLight& grey,
+                                   const glm::dvec3& point, double distance_m) const;
+  /// Returns the transmittance to the light of the layers other than one.
+  [[nodiscard]] double PastOthers(std::size_t layer, const glm::dvec3& flat_point) const;
+
+  [[nodiscard]] std::size_t layers() const { return clouds_->light.size(); }
+  [[nodiscard]] const CloudLight& Layer(std::size_t layer) const { return clouds_->light[layer]; }
+  /// Returns the altitudes of a layer.
+  [[nodiscard]] AltitudeRange RangeOf(std::size_t layer) const;
+
+  std::shared_ptr<const SolvedClouds> clouds_;
+  const SceneGeometry& geometry_;
+  SolvedAir air_;
+  DistantLight light_;
+  std::shared_ptr<const CloudShadow> shadow_;
+  /// Radiance of sky above and of ground below each layer, per unit solar irradiance [1/sr].
+  std::vector<Spectrum> sky_above_, ground_below_;
+  /// Light below each interface: per unit skylight from above all layers, and by the sun's beam
+  /// alone, per unit solar irradiance.
+  std::vector<Spectrum> sky_left_, sun_added_;
+};
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/lit_clouds/layer_exchange.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace alpenglow::renderer {
+namespace {
+
+constexpr std::array<CloudLayerFluxes, 3> kThreeLayers{
+    {{0.2, 0.5, 0.3, 0.35, 0.65}, {0.1, 0.7, 0.2, 0.15, 0.85}, {0.05, 0.9, 0.04, 0.1, 0.88}}};
+
+/// Follows light from interface to interface until less than 1e-15 of it is left.
+std::vector<InterfaceFluxes> FollowedBetween(std::span<const CloudLayerFluxes> layers,
+                                             const InterfaceFluxes& above, double ground_albedo) {
+  const std::size_t top = layers.size();
+  std::vector<InterfaceFluxes> sum(top + 1);
+  std::vector<double> down(top + 1), up(top + 1);
+  down[top] = above.down;
+  double direct = above.direct;
+  sum[top].direct = direct;
+  for (std::size_t i = top; i-- > 0;) {
+    down[i] += layers[i].sun_down * direct;
+    up[i + 1] += layers[i].sun_up * direct;
+    direct *= layers[i].sun_direct;
+    sum[i].direct = direct;
+  }
+  up[0] += ground_albedo * direct;
+  for (int order = 0; order < 2000; ++order) {
+    std::vector<double> next_down(top + 1), next_up(top + 1);
+    for (std::size_t i = 0; i <= top; ++i) {
+      sum[i].down += down[i];
+      sum[i].up += up[i];
+    }
+    next_up[0] = ground_albedo * down[0];
+    for (std::size_t i = 0; i < top; ++i) {
+      next_down[i] += layers[i].sky_down * down[i + 1] + layers[i].sky_up * up[i];
+      next_up[i + 1] += layers[i].sky_up * down[i + 1] + layers[i].sky_down * up[i];
+    }
+    down = next_down;
+    up = next_up;
+  }
+  return sum;
+}
+
+// Both sum the same series; 1e-12 is rounding.
+TEST(LayerExchange, EqualsLightFollowedFromLayerToLayer) {
+  const InterfaceFluxes above{.down = 0.2, .direct = 0.7};
+  const auto at = FluxesBetween(kThreeLayers, above, 0.6);
+  const auto followed = FollowedBetween(kThreeLayers, above, 0.6);
+  ASSERT_EQ(at.size(), 4u);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    EXPECT_NEAR(at[i].down, followed[i].down, 1e-12) << i;
+    EXPECT_NEAR(at[i].up, followed[i].up, 1e-12) << i;
+    EXPECT_NEAR(at[i].direct, followed[i].direct, 1e-12) << i;
+  }
+}
+
+// What enters the top leaves through the top or is absorbed by layers or ground; rounding.
+TEST(LayerExchange, WhiteLayersOverWhiteGroundReflectEverything) {
+  const std::array<CloudLayerFluxes, 2> white{
+      {{0.3, 0.4, 0.3, 0.4, 0.6}, {0.2, 0.5, 0.3, 0.3, 0.7}}};
+  const auto at = FluxesBetween(white, {.down = 0.3, .direct = 0.5}, 1.0);
+  EXPECT_NEAR(at.back().up, 0.8, 1e-12);
+}
+
+TEST(LayerExchange, WithoutLayersTheGroundReflectsWhatArrives) {
+  const auto at = FluxesBetween({}, {.down = 0.2, .direct = 0.5}, 0.1);
+  ASSERT_EQ(at.size(), 1u);
+  EXPECT_DOUBLE_EQ(at[0].up, 0.07);
+}
+
+}  // namespace
+}  // namespace alpenglow::renderer
