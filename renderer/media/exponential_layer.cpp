@@ -38,16 +38,6 @@ double PerigeeOf(const PointOnRay& at, double planet_radius_m) {
   return at.altitude_m - (planet_radius_m + at.altitude_m) * (1.0 - std::sqrt(1.0 - at.mu * at.mu));
 }
 
-MediumOptics OpticsOf(const MediumLayer& layer, std::size_t bands) {
-  MediumOptics optics{SpectrumOf<double>(bands), SpectrumOf<double>(bands),
-                      SpectrumOf<double>(bands), layer.phase};
-  for (std::size_t band = 0; band < bands; ++band) {
-    optics.extinction_per_m[band] = layer.extinction_per_m;
-    optics.scattering_per_m[band] = layer.extinction_per_m * layer.albedo;
-  }
-  return optics;
-}
-
 /// Returns the altitude of the lowest ground under a layer: that of the terrain, or of the planet
 /// around it if the layer lies wholly below the terrain; no value if there is no layer above the
 /// ground.
@@ -173,7 +163,8 @@ MediaList LayersOf(const Scene& scene, const SceneGround& ground, const Medium& 
     if (layer.extinction_per_m <= 0.0) continue;
     if (const std::optional<LayerShape> shape = ShapeOf(layer, ground, medium)) {
       layers.push_back(std::make_shared<const ExponentialLayer>(
-          *shape, OpticsOf(layer, medium.wavelengths_nm.size())));
+          *shape, OpticsFromLists({layer.extinction_per_m}, {layer.albedo}, layer.phase,
+                                  medium.wavelengths_nm.size())));
     }
   }
   return layers;

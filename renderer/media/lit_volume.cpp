@@ -77,7 +77,7 @@ Spectrum InFloats(const SpectrumOf<double>& values) {
 
 }  // namespace
 
-LitVolume::LitVolume(const LocalVolume& volume, const MediaSources& sources)
+LitVolume::LitVolume(const LocalBody& volume, const MediaSources& sources)
     : volume_(volume),
       sources_(sources),
       scattering_per_m_(InFloats(volume.optics().scattering_per_m)),
@@ -102,9 +102,10 @@ SkyMoments LitVolume::Sky() const {
 }
 
 std::optional<VolumeGrid> LitVolume::SunColumns() const {
-  if (volume_.grid() == nullptr) return std::nullopt;
   constexpr int kMost = 64;
-  std::array<int, 3> size = volume_.grid()->size();
+  const auto samples = volume_.Samples();
+  if (!samples) return std::nullopt;
+  std::array<int, 3> size = *samples;
   for (int& side : size) side = std::min(side, kMost);
   const auto column = [&](const glm::dvec3& unit) {
     SpectrumOf<double> of_all(1);
@@ -140,8 +141,7 @@ std::vector<LitVolume::VolumeLamp> LitVolume::Lamps() const {
 LitVolume::VolumeLamp LitVolume::LampOf(std::uint32_t number) const {
   constexpr int kMost = 24, kPlain = 8;
   constexpr double kDark = 60.0;
-  std::array<int, 3> size{kPlain, kPlain, kPlain};
-  if (volume_.grid() != nullptr) size = volume_.grid()->size();
+  std::array<int, 3> size = volume_.Samples().value_or(std::array{kPlain, kPlain, kPlain});
   for (int& side : size) side = std::min(side, kMost);
   const glm::dvec3 lamp = sources_.lamps->At(number).lamp.position_m;
   const auto depth_at = [&](const glm::dvec3& unit) {
@@ -149,7 +149,7 @@ LitVolume::VolumeLamp LitVolume::LampOf(std::uint32_t number) const {
     const double distance = std::max(glm::length(lamp - point), 1e-9);
     SpectrumOf<double> depth = sources_.lamps->DepthTo(number, point);
     for (const auto& medium : sources_.media.all()) {
-      const bool is_exact = medium.get() == &volume_ && volume_.grid() == nullptr;
+      const bool is_exact = medium.get() == &volume_ && !volume_.Samples();
       if (medium->IsLayer() || is_exact) continue;
       AddDepth(*medium, medium->Column(point, (lamp - point) / distance, distance), depth);
     }
@@ -224,7 +224,7 @@ void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& point,
                           Phase(optics.phase, glm::dot(direction, towards));
   if (per_area == 0.0) return;
   const glm::dvec3 unit = volume_.UnitFromFrame(point);
-  const double own = volume_.grid() != nullptr ? 0.0 : volume_.Column(point, towards, distance);
+  const double own = volume_.Samples() ? 0.0 : volume_.Column(point, towards, distance);
   for (std::size_t band = 0; band < sum.size(); ++band) {
     const double depth = own * optics.extinction_per_m[band] + seen.depth[band].At(unit);
     sum[band] += lamp.intensity[band] *

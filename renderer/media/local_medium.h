@@ -13,8 +13,9 @@
 // the whole scene) is the same at all places of one altitude. Layers are also part of the air around
 // lamps (LampStage), so light of lamps is attenuated there and not by the march.
 //
-// A new kind of medium is a subclass of LocalMedium with one of LitMedium, and an entry in the
-// constructor of LocalMedia. renderer/README.md lists what its section of scene.toml needs.
+// A new body is a subclass of LocalBody (local_body.h). Another kind of medium is a subclass of
+// LocalMedium with one of LitMedium. Both need an entry in the constructor of LocalMedia.
+// renderer/README.md lists what its section of scene.toml needs.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -26,6 +27,7 @@
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "renderer/layer.h"
+#include "renderer/scene/volume_grid.h"
 #include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {
@@ -41,11 +43,12 @@ struct MediumOptics {
   PhaseFunction phase;
 };
 
-/// An interval of a line and an upper bound of the density on it.
-struct DensePiece {
-  double begin_m, end_m;
-  double largest;
-};
+/// Returns a value for each band from a list with one value, or one per band.
+[[nodiscard]] SpectrumOf<double> InBands(const std::vector<double>& values, std::size_t bands);
+/// Returns optical properties without emission. The lists have one value, or one per band.
+[[nodiscard]] MediumOptics OpticsFromLists(const std::vector<double>& extinction_per_m,
+                                           const std::vector<double>& albedo,
+                                           const PhaseFunction& phase, std::size_t bands);
 
 /// Immutable; safe to use from many threads. Points are in the frame of SceneGround; directions are
 /// unit vectors.

@@ -144,8 +144,8 @@ struct MediumLayer {
   PhaseFunction phase;
 };
 
-/// A local participating medium, see LocalVolume: smoke, a bank of droplets, a glowing gas. Lists hold one
-/// value, or one per wavelength of the medium.
+/// A local participating medium, see LocalVolume: smoke, a bank of droplets, a glowing gas. Lists
+/// hold one value, or one per wavelength of the medium.
 struct Volume {
   VolumePlacement::Shape shape = VolumePlacement::Shape::kBox;
   Place place;                                  // with height 0

@@ -133,14 +133,14 @@ double VolumeGrid::At(const glm::dvec3& point) const {
   return (1.0 - share[2]) * along_xy(0) + share[2] * along_xy(1);
 }
 
-std::vector<VolumeGrid::Piece> VolumeGrid::PiecesAlong(const glm::dvec3& origin,
-                                                       const glm::dvec3& direction, double begin,
-                                                       double end) const {
+std::vector<DensePiece> VolumeGrid::PiecesAlong(const glm::dvec3& origin,
+                                                const glm::dvec3& direction, double begin_m,
+                                                double end_m) const {
   const glm::dvec3 scale = glm::dvec3(size_[0], size_[1], size_[2]) / double{kBlock};
   const glm::dvec3 from = origin * scale - 0.5 / kBlock;
   const glm::dvec3 slope = direction * scale;
-  std::vector<Piece> pieces;
-  WalkPlanes(from, slope, begin, end, [&](double a, double b) {
+  std::vector<DensePiece> pieces;
+  WalkPlanes(from, slope, begin_m, end_m, [&](double a, double b) {
     const glm::dvec3 middle = from + 0.5 * (a + b) * slope;
     std::size_t index = 0;
     for (int axis = 2; axis >= 0; --axis) {
@@ -159,13 +159,14 @@ double VolumeGrid::Column(const glm::dvec3& origin, const glm::dvec3& direction,
   constexpr double kGauss = 0.21132486540518712;  // (1 - 1 / sqrt 3) / 2
   const glm::dvec3 scale(size_[0], size_[1], size_[2]);
   double sum = 0.0;
-  for (const Piece& piece : PiecesAlong(origin, direction, begin, end)) {
-    WalkPlanes(
-        origin * scale - 0.5, direction * scale, piece.begin, piece.end, [&](double a, double b) {
-          const double near = a + kGauss * (b - a);
-          const double far = b - kGauss * (b - a);
-          sum += 0.5 * (b - a) * (At(origin + near * direction) + At(origin + far * direction));
-        });
+  for (const DensePiece& piece : PiecesAlong(origin, direction, begin, end)) {
+    WalkPlanes(origin * scale - 0.5, direction * scale, piece.begin_m, piece.end_m,
+               [&](double a, double b) {
+                 const double near = a + kGauss * (b - a);
+                 const double far = b - kGauss * (b - a);
+                 sum +=
+                     0.5 * (b - a) * (At(origin + near * direction) + At(origin + far * direction));
+               });
   }
   return sum;
 }

@@ -20,6 +20,12 @@ namespace alpenglow::renderer {
 
 inline constexpr int kMostGridSamples = 1024;  // along an axis
 
+/// An interval of a line and an upper bound of the density on it.
+struct DensePiece {
+  double begin_m, end_m;
+  double largest;
+};
+
 /// Immutable.
 class VolumeGrid {
  public:
@@ -35,16 +41,11 @@ class VolumeGrid {
   /// Returns the density at a point of the unit cube; coordinates are clamped to the cube.
   [[nodiscard]] double At(const glm::dvec3& point) const;
 
-  /// An interval of a line and an upper bound of the density on it.
-  struct Piece {
-    double begin, end;
-    double largest;
-  };
-  /// Returns the intervals of origin + t direction, t in [begin, end], where density can differ
+  /// Returns the intervals of origin + t direction, t in [begin_m, end_m], where density can differ
   /// from 0, in order: one per block. That part of the line must lie in the unit cube.
-  [[nodiscard]] std::vector<Piece> PiecesAlong(const glm::dvec3& origin,
-                                               const glm::dvec3& direction, double begin,
-                                               double end) const;
+  [[nodiscard]] std::vector<DensePiece> PiecesAlong(const glm::dvec3& origin,
+                                                    const glm::dvec3& direction, double begin_m,
+                                                    double end_m) const;
 
   /// Returns the integral of density over t from begin to end. Exact except for rounding: relative
   /// error below 1e-12.

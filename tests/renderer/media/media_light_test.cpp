@@ -237,6 +237,45 @@ TEST(MediaLight, WhiteFogOverBlackGroundConservesEnergy) {
   }
 }
 
+/// A kind of body that only this test has: density 1 throughout.
+class PlainBody final : public LocalBody {
+ public:
+  using LocalBody::LocalBody;
+
+  [[nodiscard]] double DensityAt(const glm::dvec3& point) const override {
+    return Contains(point) ? 1.0 : 0.0;
+  }
+  [[nodiscard]] std::vector<DensePiece> PiecesAlong(const glm::dvec3& origin,
+                                                    const glm::dvec3& direction,
+                                                    double length_m) const override {
+    const auto span = SpanAlong(origin, direction, length_m);
+    return span ? std::vector<DensePiece>{{span->begin_m, span->end_m, 1.0}}
+                : std::vector<DensePiece>();
+  }
+  [[nodiscard]] double Column(const glm::dvec3& origin, const glm::dvec3& direction,
+                              double length_m) const override {
+    const auto span = SpanAlong(origin, direction, length_m);
+    return span ? span->end_m - span->begin_m : 0.0;
+  }
+};
+
+TEST(LocalBody, ANewKindOfBodyIsLitLikeAVolume) {
+  const MediaStage& stage = TheStage();
+  const glm::dvec3 bottom(0.0, 300.0, 20.0), size(50.0, 20.0, 60.0);
+  const MediumOptics optics = Optics(0.02, 0.9);
+  VolumePlacement placement;
+  placement.bottom = bottom;
+  placement.size_m = size;
+  const auto body = std::make_shared<const PlainBody>(placement, optics);
+  const glm::dvec3 look(0.0, 1.0, 0.0);
+  const MarchedLight light = stage.Lit({body}).Along(kMediaEye, look, INFINITY, nullptr);
+  const MarchedLight expected =
+      stage.Lit({Box(bottom, size, optics)}).Along(kMediaEye, look, INFINITY, nullptr);
+  EXPECT_GT(light.radiance[1], 0.0F);
+  EXPECT_EQ(light.radiance, expected.radiance);
+  EXPECT_EQ(light.transmittance, expected.transmittance);
+}
+
 TEST(MediaLight, LampsLightAVolumeLikeHomogeneousAir) {
   MediaStage stage(tests::ThreeBandAir());
   stage.scene.lights = {tests::LampNear(stage.scene.place, 60.0, 0.0, 52.0, 100.0)};
