@@ -280,6 +280,12 @@ Triple Product(std::span<const double> matrix, std::span<const double> bands) {
           Dot(matrix.subspan(2 * n, n), bands)};
 }
 
+SpectrumOf<double> InDouble(const Spectrum& light) {
+  SpectrumOf<double> values(light.size());
+  std::copy_n(light.values().begin(), light.size(), values.values().begin());
+  return values;
+}
+
 }  // namespace
 
 const std::vector<TrainedBands>& TrainedBandSets() {
@@ -345,6 +351,18 @@ std::array<double, 3> BandColour::LinearSrgb(std::span<const double> radiance) c
 double BandColour::ScotopicLuminance(std::span<const double> radiance) const {
   ALPENGLOW_ENSURE(radiance.size(), ==, wavelengths_nm_.size());
   return Dot(scotopic_, radiance);
+}
+
+std::array<double, 3> BandColour::Xyz(const Spectrum& radiance) const {
+  return Xyz(InDouble(radiance).values());
+}
+
+std::array<double, 3> BandColour::LinearSrgb(const Spectrum& radiance) const {
+  return LinearSrgb(InDouble(radiance).values());
+}
+
+double BandColour::ScotopicLuminance(const Spectrum& radiance) const {
+  return ScotopicLuminance(InDouble(radiance).values());
 }
 
 }  // namespace alpenglow::atmosphere

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include <alpenglow/spectrum.h>
+
 namespace alpenglow::atmosphere {
 
 /// A published table of y over x, interpolated linearly between its points.
@@ -97,12 +99,15 @@ class BandColour {
 
   /// @param radiance one value per band.
   [[nodiscard]] std::array<double, 3> Xyz(std::span<const double> radiance) const;
+  [[nodiscard]] std::array<double, 3> Xyz(const Spectrum& radiance) const;
   [[nodiscard]] std::array<double, 3> LinearSrgb(std::span<const double> radiance) const;
+  [[nodiscard]] std::array<double, 3> LinearSrgb(const Spectrum& radiance) const;
 
   /// Returns the scotopic luminance [scotopic cd/m^2], the luminance for the rods, by a row fitted
   /// to the family of daylight spectra. Error over the skies and suns of the tests above, mean and
   /// 95th percentile: 3 bands 4 % and 8 %, 4 bands 1 % and 3.1 %, more bands 0.2 % and 0.3 %.
   [[nodiscard]] double ScotopicLuminance(std::span<const double> radiance) const;
+  [[nodiscard]] double ScotopicLuminance(const Spectrum& radiance) const;
 
   /// Returns the row-major 3 x N matrix from bands to linear sRGB [cd/m^2 per W m^-2 sr^-1 nm^-1].
   [[nodiscard]] std::span<const double> linear_srgb_from_bands() const { return srgb_; }

@@ -147,18 +147,16 @@ double ScatteringTable::SunCosineOfTexel(std::size_t mu_s) const {
   return AxisFrom(lowest_mu_s_).MuS(unit);
 }
 
-ScatteringTable::AxisTaps ScatteringTable::SunTaps(double mu_s) const {
+CubicTaps ScatteringTable::SunTaps(double mu_s) const {
   if (axes_ == ScatteringAxes::kBruneton) {
     const auto at = AxisPosition::FromUnit(
         shared::UnitFromSunCosine<double>(mu_s, lowest_mu_s_, top_km_, radius_km_), size_.mu_s);
     return {{at.low, at.low + 1}, {at.Weight(0), at.Weight(1)}};
   }
-  const CubicTaps taps =
-      TapsAt(AxisFrom(lowest_mu_s_).Coordinate(mu_s), static_cast<int>(size_.mu_s));
-  return {taps.node, taps.weight};
+  return TapsAt(AxisFrom(lowest_mu_s_).Coordinate(mu_s), static_cast<int>(size_.mu_s));
 }
 
-ScatteringTable::AxisTaps ScatteringTable::AngleTaps(const Start& start, double nu) const {
+CubicTaps ScatteringTable::AngleTaps(const Start& start, double nu) const {
   if (axes_ == ScatteringAxes::kBruneton) {
     const auto at = AxisPosition::FromUnit(shared::UnitFromScatteringCosine<double>(nu), size_.nu);
     return {{at.low, at.low + 1}, {at.Weight(0), at.Weight(1)}};
@@ -168,7 +166,7 @@ ScatteringTable::AxisTaps ScatteringTable::AngleTaps(const Start& start, double 
   // If the azimuth is undefined, all texels hold one value.
   const double cosine = sines > 0.0 ? shared::AzimuthCosine(start.mu, start.mu_s, nu, sines) : 1.0;
   const auto at = AxisPosition::FromUnit(std::acos(cosine) / kPi, size_.nu);
-  AxisTaps taps{{}, CatmullRom(at.fraction)};
+  CubicTaps taps{{}, CatmullRom(at.fraction)};
   // Beyond both ends of the axis the light is mirrored.
   const std::size_t last = size_.nu - 1;
   taps.node = {at.low == 0 ? 1 : at.low - 1, at.low, at.low + 1,
@@ -194,13 +192,11 @@ ScatteringTable::PlaneTaps ScatteringTable::TapsByLength(const Start& start) con
   const double r_unit = UnitFromAltitude<double>(start.altitude_km, top_km_, radius_km_);
   const auto linear = AxisPosition::FromUnit(r_unit, size_.altitudes);
   const auto m = AxisPosition::FromUnit(mu_unit, half);
-  AxisTaps r{{linear.low, linear.low + 1}, {linear.Weight(0), linear.Weight(1)}};
+  CubicTaps r{{linear.low, linear.low + 1}, {linear.Weight(0), linear.Weight(1)}};
   // The axis is cubic only where all neighbours have a length. Rays to the ground from the ground,
   // and rays on the top, have none.
-  if (axes_ == ScatteringAxes::kAzimuth && !start.ground && linear.low + 3 < size_.altitudes) {
-    const CubicTaps taps = TapsAt(r_unit, static_cast<int>(size_.altitudes));
-    r = {taps.node, taps.weight};
-  }
+  if (axes_ == ScatteringAxes::kAzimuth && !start.ground && linear.low + 3 < size_.altitudes)
+    r = TapsAt(r_unit, static_cast<int>(size_.altitudes));
   const double here = LengthOf(start.ground, start.altitude_km, mu_unit);
   PlaneTaps taps{};
   for (std::size_t up_m = 0; up_m < 2; ++up_m) {
@@ -228,8 +224,8 @@ ScatteringTable::PlaneTaps ScatteringTable::TapsByLength(const Start& start) con
 }
 
 ScatteredOnce<float> ScatteringTable::Interpolate(const Start& start, double nu) const {
-  const AxisTaps s = SunTaps(start.mu_s);
-  const AxisTaps v = AngleTaps(start, nu);
+  const CubicTaps s = SunTaps(start.mu_s);
+  const CubicTaps v = AngleTaps(start, nu);
   const std::size_t bands = air_.bands();
   std::array<float, 2 * kMaxBands> sum{};
   for (const PlaneTap& plane : TapsByLength(start)) {

@@ -108,11 +108,6 @@ class ScatteringTable {
     double altitude_km, mu, mu_s;
     bool ground;
   };
-  /// Texels of one axis around a position.
-  struct AxisTaps {
-    std::array<std::size_t, 4> node{};
-    std::array<float, 4> weight{};  // texels of weight 0 are not read
-  };
   /// A texel of the plane of altitude and view angle.
   struct PlaneTap {
     std::size_t mu = 0, altitude = 0;
@@ -122,8 +117,8 @@ class ScatteringTable {
 
   void FillRow(std::size_t row);
   [[nodiscard]] ScatteredOnce<float> Interpolate(const Start& start, double nu) const;
-  [[nodiscard]] AxisTaps SunTaps(double mu_s) const;
-  [[nodiscard]] AxisTaps AngleTaps(const Start& start, double nu) const;
+  [[nodiscard]] CubicTaps SunTaps(double mu_s) const;
+  [[nodiscard]] CubicTaps AngleTaps(const Start& start, double nu) const;
   [[nodiscard]] PlaneTaps TapsByLength(const Start& start) const;
   [[nodiscard]] double LengthOf(bool ground, double altitude_km, double mu_unit) const;
   [[nodiscard]] double SunCosineOfTexel(std::size_t mu_s) const;

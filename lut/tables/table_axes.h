@@ -100,11 +100,10 @@ struct AxisPosition {
   [[nodiscard]] float Weight(std::size_t up) const { return up == 1 ? fraction : 1.0F - fraction; }
 };
 
-/// The neighbours of a position. At the ends of the grid the missing neighbour is extrapolated by
-/// the parabola through the last three (BeyondEnd), and has weight 0 here.
+/// The neighbours of a position: four, or two and two of weight 0, which are not read.
 struct CubicTaps {
-  std::array<std::size_t, 4> node;
-  std::array<float, 4> weight;
+  std::array<std::size_t, 4> node{};
+  std::array<float, 4> weight{};
 };
 
 /// Returns the Catmull-Rom weights of the four neighbours at a fraction t in [0, 1] of the cell.
@@ -113,7 +112,8 @@ struct CubicTaps {
           shared::CubicWeight3(t)};
 }
 
-/// Returns the taps at a position.
+/// Returns the taps at a position. At the ends of the grid the missing neighbour is extrapolated by
+/// the parabola through the last three (BeyondEnd), and has weight 0 here.
 /// @param coordinate position in [0, 1] over n >= 2 nodes, clamped; linear between two nodes.
 [[nodiscard]] inline CubicTaps TapsAt(double coordinate, int n) {
   const double position = std::clamp(coordinate, 0.0, 1.0) * (n - 1);

@@ -49,7 +49,7 @@ StarLight LightOf(const PointLight& point, const glm::dvec3& direction, const Ba
   Spectrum spectrum(wavelengths_nm.size());
   for (std::size_t band = 0; band < spectrum.size(); ++band)
     spectrum[band] = static_cast<float>(1e6 * BlackBodyRadiance(wavelengths_nm[band], temperature));
-  const double of_spectrum = colour.Xyz(InDouble(spectrum))[1];
+  const double of_spectrum = colour.Xyz(spectrum)[1];
   const double lux = IlluminanceOf(point.magnitude);
   return {direction, static_cast<float>(lux / of_spectrum) * spectrum, lux};
 }
@@ -109,7 +109,7 @@ Spectrum Skyglow(double zenith, double ground_m, const SingleScattering<float>& 
   Spectrum seen(lamps.size());
   for (std::size_t band = 0; band < lamps.size(); ++band)
     seen[band] = (1.0F - left[band]) * lamps[band];
-  return static_cast<float>(wanted / colour.Xyz(InDouble(seen))[1]) * lamps;
+  return static_cast<float>(wanted / colour.Xyz(seen)[1]) * lamps;
 }
 
 OpenShutter OpenFor(double open_s, double pixel_angle_rad) {

@@ -8,11 +8,7 @@
 // passes; of unpolarised light this is half.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <glm/vec3.hpp>
-#include <span>
 
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/polarised_scattering.h"
@@ -20,19 +16,6 @@
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
-
-/// A view of band light in double precision, for functions that sum colours.
-class InDouble {
- public:
-  explicit InDouble(const Spectrum& light) : count_(light.size()) {  // NOLINT: value_ is set below
-    std::copy_n(light.values().begin(), count_, value_.begin());
-  }
-  operator std::span<const double>() const { return {value_.data(), count_}; }  // NOLINT: a view
-
- private:
-  std::array<double, kMaxBands> value_;  // the first `count_` entries; the others are never read
-  std::size_t count_;
-};
 
 /// Coefficients of Q and U along a unit vector p across the view: cos(2 a) and sin(2 a).
 struct Analyser {

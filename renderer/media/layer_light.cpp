@@ -91,15 +91,15 @@ double LayerLight::DepthAbove(double altitude_m) const {
   return std::min(extinction_per_m_ * layer_.ColumnAbove(altitude_m), depth_);
 }
 
-LayerLight::NodePosition LayerLight::PlaceOf(double altitude_m) const {
+AxisPosition LayerLight::PlaceOf(double altitude_m) const {
   const double u =
       depth_ > 0.0 ? (kGlowNodes - 1) * std::sqrt(std::sqrt(DepthAbove(altitude_m) / depth_)) : 0.0;
   const double low = std::min(std::floor(u), kGlowNodes - 2.0);
   return {static_cast<std::size_t>(low), static_cast<float>(u - low)};
 }
 
-Spectrum LayerLight::At(const std::vector<Spectrum>& nodes, const NodePosition& place) {
-  return (1.0F - place.share) * nodes[place.low] + place.share * nodes[place.low + 1];
+Spectrum LayerLight::At(const std::vector<Spectrum>& nodes, const AxisPosition& place) {
+  return place.Weight(0) * nodes[place.low] + place.Weight(1) * nodes[place.low + 1];
 }
 
 LayerLight::Look LayerLight::LookAlong(const glm::dvec3& look) const {
@@ -116,7 +116,7 @@ LayerLight::Scattered LayerLight::At(const Look& look, double altitude_m, const 
   // Light that reaches the eye travels against the viewing direction: downwards if the view goes
   // upwards.
   const auto tilt = static_cast<float>(chi_[1] * look.down);
-  const NodePosition place = PlaceOf(altitude_m);
+  const AxisPosition place = PlaceOf(altitude_m);
   return {once * sun + lit * Field(of_sun_, place, tilt),
           SkyLeft(altitude_m) * NotNegative(sky_.At(look.sky, altitude_m)) +
               Field(of_sky_, place, tilt)};
@@ -124,7 +124,7 @@ LayerLight::Scattered LayerLight::At(const Look& look, double altitude_m, const 
 
 // At the edge of a layer, a radiance that is linear in the cosine is negative in directions from
 // which no light arrives.
-Spectrum LayerLight::Field(const Glow& glow, const NodePosition& place, float tilt) {
+Spectrum LayerLight::Field(const Glow& glow, const AxisPosition& place, float tilt) {
   return NotNegative(At(glow.mean, place) + tilt * At(glow.slope, place));
 }
 
@@ -133,7 +133,7 @@ float LayerLight::SkyLeft(double altitude_m) const {
 }
 
 Spectrum LayerLight::OnSurface(double altitude_m, double cos_up) const {
-  const NodePosition place = PlaceOf(altitude_m);
+  const AxisPosition place = PlaceOf(altitude_m);
   const auto tilt = static_cast<float>(2.0 * kPi / 3.0 * cos_up);
   Spectrum irradiance =
       static_cast<float>(kPi) * (At(of_sun_.mean, place) + At(of_sky_.mean, place)) +

@@ -23,6 +23,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "lut/tables/table_axes.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/sky_moments.h"
 #include "renderer/media/exponential_layer.h"
@@ -72,16 +73,12 @@ class LayerLight {
   struct Glow {
     std::vector<Spectrum> mean, slope;  // at depth (i / last)^4 of the layer's [1/sr]
   };
-  struct NodePosition {
-    std::size_t low;
-    float share;
-  };
   [[nodiscard]] double DepthAbove(double altitude_m) const;
-  [[nodiscard]] NodePosition PlaceOf(double altitude_m) const;
-  [[nodiscard]] static Spectrum At(const std::vector<Spectrum>& nodes, const NodePosition& place);
+  [[nodiscard]] AxisPosition PlaceOf(double altitude_m) const;
+  [[nodiscard]] static Spectrum At(const std::vector<Spectrum>& nodes, const AxisPosition& place);
   /// Returns the diffuse light scattered at a place, at least 0.
   /// @param tilt  the mean cosine of the phase function times Look::down.
-  [[nodiscard]] static Spectrum Field(const Glow& glow, const NodePosition& place, float tilt);
+  [[nodiscard]] static Spectrum Field(const Glow& glow, const AxisPosition& place, float tilt);
   void Solve(double albedo, double mu0, const Spectrum& sun, const Spectrum& sky,
              const std::vector<double>& ground_albedo);
 

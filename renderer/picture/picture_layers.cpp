@@ -17,7 +17,7 @@ namespace alpenglow::renderer {
 namespace {
 
 LayerValues Rgb(const BandColour& colour, const Spectrum& light) {
-  const auto rgb = colour.LinearSrgb(InDouble(light));
+  const auto rgb = colour.LinearSrgb(light);
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
 
@@ -49,7 +49,7 @@ LayerValues SunVisibility(const BandColour&, const PixelSum& rays) {
 }
 
 LayerValues Scotopic(const BandColour& colour, const PixelSum& rays) {
-  return {static_cast<float>(colour.ScotopicLuminance(InDouble(rays.MeanRadiance())))};
+  return {static_cast<float>(colour.ScotopicLuminance(rays.MeanRadiance()))};
 }
 
 LayerValues RayCountLayer(const BandColour&, const PixelSum& rays) {
@@ -62,7 +62,7 @@ LayerValues StokesOf(const BandColour& colour, const PixelSum& rays) {
 }
 
 LayerValues Polarisation(const BandColour& colour, const PixelSum& rays) {
-  const auto luminance = [&](const Spectrum& light) { return colour.Xyz(InDouble(light))[1]; };
+  const auto luminance = [&](const Spectrum& light) { return colour.Xyz(light)[1]; };
   const auto [degree, angle] =
       DegreeAndAngle(luminance(rays.radiance), luminance(rays.parts->polarised->q),
                      luminance(rays.parts->polarised->u));
@@ -221,7 +221,7 @@ void PixelWriter::Set(const Plane& plane, int x, int y, const LayerValues& value
 
 void PixelWriter::Write(int x, int y, const PixelSum& rays) {
   Count(static_cast<std::uint64_t>(rays.rays));
-  const auto rgb = colour_.LinearSrgb(InDouble(rays.MeanRadiance()));
+  const auto rgb = colour_.LinearSrgb(rays.MeanRadiance());
   image_.at(x, y) = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]),
                      static_cast<float>(rgb[2])};
   for (const Plane& plane : planes_) {

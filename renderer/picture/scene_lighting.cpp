@@ -46,8 +46,7 @@ void AddNight(const PreparedScene& scene, const Observer& observer, Lighting& li
                 depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(eye), geometry.radius_m(),
                                                      medium.atmosphere_height_m);
   const std::optional<Spectrum>& towns = scene.towns();
-  const double towns_lux =
-      towns ? kPi * scene.colour().Xyz(InDouble(*towns))[1] : 0.0;  // upper bound
+  const double towns_lux = towns ? kPi * scene.colour().Xyz(*towns)[1] : 0.0;  // upper bound
   if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
   light.night = std::make_shared<NightLight>(
       NightSky(observer.bodies.place, observer.bodies.instant).InFrame(observer.from_eye.axes()),
@@ -76,11 +75,11 @@ double IlluminanceBy(const PreparedScene& scene, const DistantLight& source, con
   const Spectrum irradiance =
       direct * over_ground.air.BeamLeft(sun.altitude_m, sun.mu_s_effective) +
       over_ground.air.multiple_scattering().SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
-  return scene.colour().Xyz(InDouble(source.irradiance * irradiance))[1];
+  return scene.colour().Xyz(source.irradiance * irradiance)[1];
 }
 
 double Illuminance(const PreparedScene& scene, const glm::dvec3& eye, const Lighting& light) {
-  double lux = light.night ? scene.colour().Xyz(InDouble(light.night->OnSurface(1.0)))[1] : 0.0;
+  double lux = light.night ? scene.colour().Xyz(light.night->OnSurface(1.0))[1] : 0.0;
   for (const DistantLight& source : light.Lights()) lux += IlluminanceBy(scene, source, eye, light);
   return lux;
 }

@@ -116,7 +116,7 @@ const DistantLight* OfSource(const LightsOfSky& lights, LightSource source) {
 }
 
 double LevelIlluminance(const DistantLight& source, const AirOfSky& air, double altitude_m) {
-  return air.colour.Xyz(InDouble(LevelLight(source, air, altitude_m)))[1];
+  return air.colour.Xyz(LevelLight(source, air, altitude_m))[1];
 }
 
 }  // namespace alpenglow::viewer

@@ -97,8 +97,7 @@ double ExtinctionOf(const SolvedAir& air) {
   const BandColour colour(air.medium().wavelengths_nm);
   const Spectrum left = air.single_scattering().TransmittanceToSpace(kMaunaKea_m, 1.0);
   const Spectrum moonlight = MoonlightOf(MoonAtPhase(0.0), air.medium());
-  return -2.5 *
-         std::log10(colour.Xyz(InDouble(moonlight * left))[1] / colour.Xyz(InDouble(moonlight))[1]);
+  return -2.5 * std::log10(colour.Xyz(moonlight * left)[1] / colour.Xyz(moonlight)[1]);
 }
 
 TEST(Moonlight, LightsTheSkyAsMeasuredOnMaunaKea) {
@@ -115,7 +114,7 @@ TEST(Moonlight, LightsTheSkyAsMeasuredOnMaunaKea) {
           const double separation_deg = std::acos(ray.nu) / kRadiansPerDegree;
           if (separation_deg < 30.0) continue;  // their aureole is one of other dust
           const AirAlongRay seen = aerial.Along(ray, AerialPerspective::Nodes{});
-          const double luminance = colour.Xyz(InDouble(moonlight * seen.inscatter))[1];
+          const double luminance = colour.Xyz(moonlight * seen.inscatter)[1];
           const double measured = MeasuredMoonlitSky(phase_deg, kExtinction, moon_zenith_deg,
                                                      zenith_deg, separation_deg);
           EXPECT_NEAR(luminance / measured, 1.0, 0.25)
@@ -133,7 +132,7 @@ TEST(Moonlight, AFullMoonOverheadGivesAQuarterOfALux) {
   const Spectrum moonlight = MoonlightOf(MoonAtPhase(5.0), earth.medium());
   const Spectrum on_ground = earth.single_scattering().TransmittanceToSpace(0.0, 1.0) +
                              earth.multiple_scattering().SkyIrradiance(0.0, 1.0);
-  const double lux = colour.Xyz(InDouble(moonlight * on_ground))[1];
+  const double lux = colour.Xyz(moonlight * on_ground)[1];
   EXPECT_GT(lux, 0.25);
   EXPECT_LT(lux, 0.32);
 }
@@ -156,10 +155,10 @@ struct Night {
     Spectrum seen = left * light.Above(direction);
     for (std::size_t band = 0; band < seen.size(); ++band)
       seen[band] += (1.0F - left[band]) * light.scattered()[band];
-    return colour.Xyz(InDouble(seen))[1];
+    return colour.Xyz(seen)[1];
   }
   /// Returns the illuminance of level ground [lx].
-  [[nodiscard]] double Lux() const { return colour.Xyz(InDouble(light.OnSurface(1.0)))[1]; }
+  [[nodiscard]] double Lux() const { return colour.Xyz(light.OnSurface(1.0))[1]; }
 
   double height_m;
   BandColour colour{tests::Earth().medium().wavelengths_nm};
@@ -210,7 +209,7 @@ TEST(NightLight, OfTownsIsRedAndGrowsTowardsTheHorizon) {
   EXPECT_NEAR(luminance(60.0) / luminance(0.0), 1.85, 0.15)
       << "twice the air, less what absorbs its own light";
   EXPECT_GT(luminance(85.0) / luminance(0.0), 3.5);
-  const auto rgb = city.colour.LinearSrgb(InDouble(city.light.scattered()));
+  const auto rgb = city.colour.LinearSrgb(city.light.scattered());
   EXPECT_GT(rgb[0], 1.5 * rgb[2]);
   // A sky that has 18 magnitudes everywhere would give pi times its luminance.
   EXPECT_GT(city.Lux(), kPi * luminance(0.0));
@@ -221,7 +220,7 @@ TEST(NightLight, GrowsTowardsTheHorizonAboveTheAir) {
   const Night night(NightSky(Place{46.5, 8.0, 0.0}, ParseInstant("2026-03-20T00:00:00Z")), 0.0);
   const auto luminance = [&](double elevation_deg) {
     const double e = elevation_deg * kRadiansPerDegree;
-    return night.colour.Xyz(InDouble(night.light.Above({0.0, std::cos(e), std::sin(e)})))[1];
+    return night.colour.Xyz(night.light.Above({0.0, std::cos(e), std::sin(e)}))[1];
   };
   EXPECT_GT(luminance(10.0) / luminance(60.0), 1.6);
 }

@@ -62,7 +62,7 @@ TEST(LampLight, ACandelaIsACandelaInEveryColour) {
     const Spectrum light = site.light.OnSurface(site.light.All(), facing);
     EXPECT_NEAR(site.Luminance(light), 1000.0 / (distance * distance), 0.1 * 0.01)
         << kelvin << " K: 100 m of clear air take away and give less than 1 %";
-    colours.push_back(site.colour.LinearSrgb(InDouble(light)));
+    colours.push_back(site.colour.LinearSrgb(light));
   }
   EXPECT_GT(colours[0][0], 3.0 * colours[0][2]) << "2000 K is orange";
   EXPECT_NEAR(colours[2][0] / colours[2][2], 1.0, 0.15) << "6500 K is white";

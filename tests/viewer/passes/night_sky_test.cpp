@@ -255,7 +255,7 @@ UtcTime WhenTheSunIsAt(double elevation_rad, const Place& eye, const UtcTime& no
 // Returns the illuminance of a surface that faces a light, without the sky [lux].
 double BeamIlluminance(const DistantLight& light, const AirOfSky& air, double altitude_m) {
   const double mu = light.direction.seen.z;
-  return air.colour.Xyz(InDouble(air.air->BeamLeft(altitude_m, mu) * light.irradiance))[1];
+  return air.colour.Xyz(air.air->BeamLeft(altitude_m, mu) * light.irradiance)[1];
 }
 
 TEST(LightsOfSky, ShadowsOfTheSecondLightAreInvisibleEveryEvening) {
