@@ -21,7 +21,7 @@ namespace {
 constexpr double kLeastRadius_m = 10.0, kMostRadius_m = 25.0;
 constexpr double kNodeSpacing_m = 150.0;
 constexpr double kLife_s = 4000.0;  // of a tuft
-constexpr double kPatches_m = 6827.0;
+constexpr double kPatches_m = 3413.3;
 
 /// A tuft, from which fibres fall.
 struct Tuft {
@@ -127,12 +127,14 @@ struct FibrePart {
   double per_square_length;
 };
 
-/// Fibres by the cells of a lattice of bricks that they pass.
+/// Fibres by the cells of a lattice that they pass.
 class FibreIndex {
  public:
   FibreIndex(const std::vector<Fibre>& fibres, const CloudLattice& lattice)
-      : cell_m_(8.0 * lattice.voxel_m), bottom_m_(lattice.origin_m.z) {
-    for (std::size_t axis = 0; axis < 3; ++axis) count_[axis] = (lattice.voxels[axis] + 7) / 8;
+      : cell_m_(double{kCellVoxels} * lattice.voxel_m), bottom_m_(lattice.origin_m.z) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      count_[axis] = (lattice.voxels[axis] + kCellVoxels - 1) / kCellVoxels;
+    }
     cells_.resize(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
                   static_cast<std::size_t>(count_[2]));
     for (const Fibre& fibre : fibres) {
@@ -140,9 +142,17 @@ class FibreIndex {
     }
   }
 
-  [[nodiscard]] bool IsEmpty(const glm::dvec3& low) const {
-    const std::array<int, 3> cell = CellOf(low + 0.5 * cell_m_);
-    return cell[2] < 0 || cell[2] >= count_[2] || cells_[Index(cell)].empty();
+  /// Returns whether no fibre passes near a box.
+  [[nodiscard]] bool IsEmpty(const glm::dvec3& low, const glm::dvec3& high) const {
+    const std::array<int, 3> first = CellOf(low), last = CellOf(high);
+    for (int z = std::max(first[2], 0); z <= std::min(last[2], count_[2] - 1); ++z) {
+      for (int y = first[1]; y <= last[1]; ++y) {
+        for (int x = first[0]; x <= last[0]; ++x) {
+          if (!cells_[Index({x, y, z})].empty()) return false;
+        }
+      }
+    }
+    return true;
   }
 
   /// Returns the greatest r - d of the fibres that pass the cell of a point, and at least the depth
@@ -210,6 +220,8 @@ class FibreIndex {
   }
 
   static constexpr double kSlack_m = 20.0;  // for an offset of the depth
+  // Cells of half a brick hold half as many fibres per point as cells of a brick.
+  static constexpr int kCellVoxels = 4;
 
   glm::dvec3 cell_m_;
   double bottom_m_;
@@ -232,9 +244,8 @@ class StreakShape final : public CloudShape {
   [[nodiscard]] double SignedDepth_m(const glm::dvec3& point) const override {
     return fibres_.DepthAt(point) + offset_m_;
   }
-  [[nodiscard]] bool MayHoldCloud(const glm::dvec3& low,
-                                  const glm::dvec3& /*high*/) const override {
-    return !fibres_.IsEmpty(low);
+  [[nodiscard]] bool MayHoldCloud(const glm::dvec3& low, const glm::dvec3& high) const override {
+    return !fibres_.IsEmpty(low, high);
   }
 
  private:

@@ -59,6 +59,20 @@ double BlendedValues(const glm::dvec3& cells, int period, bool wraps_z, std::uin
 /// form no square pattern.
 double RowShift(std::int32_t row) { return (row & 1) != 0 ? 0.5 : 0.0; }
 
+constexpr std::size_t kMostTexels = 256;  // along an axis
+
+/// Texels along x within one cell of an octave.
+struct TexelRun {
+  glm::dvec3 first;  // point of the first one, in cells
+  double per_texel;  // cells
+  std::size_t count;
+  double amplitude;
+
+  [[nodiscard]] glm::dvec3 PointOf(std::size_t i) const {
+    return {first.x + static_cast<double>(i) * per_texel, first.y, first.z};
+  }
+};
+
 /// Round bumps around one hashed point per cell of a lattice that repeats along all axes.
 class BumpLattice {
  public:
@@ -74,11 +88,14 @@ class BumpLattice {
     }
   }
 
-  /// Returns 1 at a point of the lattice, and 0 at distances of a cell and more.
-  [[nodiscard]] double At(const glm::dvec3& cells) const {
-    const std::array<std::int32_t, 3> middle{WholePart(cells.x), WholePart(cells.y),
-                                             WholePart(cells.z)};
-    double least = 1.0;
+  /// Adds values that are 1 at a point of the lattice, and 0 at distances of a cell and more.
+  /// @param texel  the first one of the run.
+  void AddAlong(const TexelRun& run, double* texel) const {
+    const auto& [first, per_texel, count, amplitude] = run;
+    const std::array<std::int32_t, 3> middle{WholePart(first.x), WholePart(first.y),
+                                             WholePart(first.z)};
+    std::array<double, kMostTexels> least;
+    std::fill_n(least.begin(), count, 1.0);
     for (std::int32_t z = middle[2] - 1; z <= middle[2] + 1; ++z) {
       for (std::int32_t y = middle[1] - 1; y <= middle[1] + 1; ++y) {
         const std::int32_t row =
@@ -86,13 +103,17 @@ class BumpLattice {
         for (std::int32_t x = middle[0] - 1; x <= middle[0] + 1; ++x) {
           const glm::dvec3& point =
               points_[static_cast<std::size_t>(row + WrappedCell(x, period_))];
-          const double dx = x + point.x - cells.x, dy = y + point.y - cells.y;
-          const double dz = z + point.z - cells.z;
-          least = std::min(least, dx * dx + dy * dy + dz * dz);
+          const double dy = y + point.y - first.y, dz = z + point.z - first.z;
+          const double dx = x + point.x - first.x, rest = dy * dy + dz * dz;
+          for (std::size_t i = 0; i < count; ++i) {
+            const double along = dx - static_cast<double>(i) * per_texel;
+            const double square = along * along + rest;
+            least[i] = square < least[i] ? square : least[i];
+          }
         }
       }
     }
-    return 1.0 - least;
+    for (std::size_t i = 0; i < count; ++i) texel[i] += amplitude * (1.0 - least[i]);
   }
 
  private:
@@ -101,7 +122,8 @@ class BumpLattice {
 };
 
 /// Returns the texels of a sum of octaves, scaled to mean 0 and standard deviation 1.
-/// @param octave_of  makes a function of a point in cells, from a period in cells and a seed.
+/// @param octave_of  makes, from a period in cells and a seed, a function that adds the values of
+/// texels along x within one cell.
 template <typename OctaveOf>
 std::vector<float> OctaveTexels(int side, const NoiseOctaves& octaves, const OctaveOf& octave_of) {
   const auto n = static_cast<std::size_t>(side);
@@ -114,8 +136,16 @@ std::vector<float> OctaveTexels(int side, const NoiseOctaves& octaves, const Oct
     tbb::parallel_for(std::size_t{0}, n, [&](std::size_t z) {
       double* texel = sum.data() + z * n * n;
       for (std::size_t y = 0; y < n; ++y) {
-        for (std::size_t x = 0; x < n; ++x) {
-          *texel++ += amplitude * octave((glm::dvec3(x, y, z) + 0.5) * per_texel);
+        for (std::size_t x = 0; x < n;) {
+          const glm::dvec3 first = (glm::dvec3(x, y, z) + 0.5) * per_texel;
+          const double border = WholePart(first.x) + 1.0;
+          std::size_t count = 1;
+          while (x + count < n && (static_cast<double>(x + count) + 0.5) * per_texel < border) {
+            ++count;
+          }
+          octave(TexelRun{first, per_texel, count, amplitude}, texel);
+          texel += count;
+          x += count;
         }
       }
     });
@@ -172,8 +202,8 @@ CellDistances DistancesInCells(const glm::dvec2& cells, double time, int period,
 TilingNoise TilingNoise::Billow(int side, const NoiseOctaves& octaves) {
   CheckNoise(side, octaves);
   return {side, OctaveTexels(side, octaves, [](int period, std::uint32_t seed) {
-            return [lattice = BumpLattice(period, seed)](const glm::dvec3& cells) {
-              return lattice.At(cells);
+            return [lattice = BumpLattice(period, seed)](const TexelRun& run, double* texel) {
+              lattice.AddAlong(run, texel);
             };
           })};
 }
@@ -181,8 +211,11 @@ TilingNoise TilingNoise::Billow(int side, const NoiseOctaves& octaves) {
 TilingNoise TilingNoise::Value(int side, const NoiseOctaves& octaves) {
   CheckNoise(side, octaves);
   return {side, OctaveTexels(side, octaves, [](int period, std::uint32_t seed) {
-            return
-                [=](const glm::dvec3& cells) { return BlendedValues(cells, period, true, seed); };
+            return [=](const TexelRun& run, double* texel) {
+              for (std::size_t i = 0; i < run.count; ++i) {
+                texel[i] += run.amplitude * BlendedValues(run.PointOf(i), period, true, seed);
+              }
+            };
           })};
 }
 

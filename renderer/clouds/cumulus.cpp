@@ -4,6 +4,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -101,6 +103,7 @@ std::vector<PlumeFoot> PlumeFeet(double size_m, CountedRandom& random) {
 /// Adds one plume: spheres in a chain from the base to its top.
 void AddPlume(const CloudPlan& plan, const PlumeFoot& foot, CountedRandom& random,
               std::vector<CloudSphere>& plumes) {
+  constexpr double kMeeting = 0.3;
   const double radius = foot.radius_m;
   const double eccentricity = std::min(1.0, 2.0 * glm::length(foot.place_m) / plan.size_m);
   const double top = std::max(
@@ -109,10 +112,11 @@ void AddPlume(const CloudPlan& plan, const PlumeFoot& foot, CountedRandom& rando
   do {
     const double share = height / top;
     const glm::dvec2 jitter(random.Between(-0.175, 0.175), random.Between(-0.175, 0.175));
-    const double here = radius * (1.1 - 0.35 * share) * random.Between(0.85, 1.15);
-    plumes.push_back(
-        {glm::dvec3(foot.place_m + plan.lean * height + radius * jitter, height), here});
-    height += 0.8 * radius;
+    const double here = radius * (1.05 - 0.2 * share) * random.Between(0.85, 1.15);
+    // Plumes meet above the middle, so that a cloud has one dome and not a tower on every foot.
+    const glm::dvec2 place = (1.0 - kMeeting * share) * foot.place_m;
+    plumes.push_back({glm::dvec3(place + plan.lean * height + radius * jitter, height), here});
+    height += 0.7 * radius;
   } while (height <= top - 0.6 * radius);
 }
 
@@ -162,19 +166,32 @@ CumulusCloud DrawnCloud(const CloudOptions& options, int number, double time_s) 
 
 /// Cells of the ground grid under a cloud, relative to that of its middle.
 std::vector<std::pair<int, int>> FootprintOf(const CumulusCloud& cloud, double scale) {
-  std::vector<std::pair<int, int>> cells;
+  double reach = 0.0;  // in cells
+  for (const CloudSphere& sphere : cloud.spheres) {
+    const double away = glm::length(glm::dvec2(sphere.centre_m)) + sphere.radius_m;
+    reach = std::max(reach, scale / kGrid_m * away);
+  }
+  const int most = static_cast<int>(reach) + 1, side = 2 * most + 1;
+  std::vector<char> is_under(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  const auto index = [&](int x, int y) {
+    return static_cast<std::size_t>((x + most) * side + y + most);
+  };
   for (const CloudSphere& sphere : cloud.spheres) {
     const glm::dvec2 middle = scale / kGrid_m * glm::dvec2(sphere.centre_m);
     const double radius = scale / kGrid_m * sphere.radius_m;
     for (int y = static_cast<int>(std::ceil(middle.y - radius)); y <= middle.y + radius; ++y) {
       for (int x = static_cast<int>(std::ceil(middle.x - radius)); x <= middle.x + radius; ++x) {
         const glm::dvec2 away = glm::dvec2(x, y) - middle;
-        if (glm::dot(away, away) < radius * radius) cells.emplace_back(x, y);
+        if (glm::dot(away, away) < radius * radius) is_under[index(x, y)] = 1;
       }
     }
   }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  std::vector<std::pair<int, int>> cells;
+  for (int x = -most; x <= most; ++x) {
+    for (int y = -most; y <= most; ++y) {
+      if (is_under[index(x, y)] != 0) cells.emplace_back(x, y);
+    }
+  }
   return cells;
 }
 
@@ -261,7 +278,7 @@ class CloudPlacing {
 
   /// Returns how likely a place is, relative to the best ones: clouds come in clusters.
   [[nodiscard]] double Likelihood(const glm::dvec2& place) const {
-    const GroundNoise clusters{5120.0, 2, 0.6, 1e9, 3U + 1000U * options_.seed};
+    const GroundNoise clusters{2560.0, 2, 0.6, 1e9, 3U + 1000U * options_.seed};
     return SmoothRamp(-1.1, 0.5, clusters.At(place, 0.0, options_.period_m));
   }
 
@@ -281,7 +298,7 @@ class SphereUnion {
                  static_cast<std::size_t>(layers_)) {
     std::vector<PlacedSphere> spheres;
     for (const CumulusCloud& cloud : clouds) {
-      const double relief = std::clamp(cloud.growth * cloud.size_m / kFullRelief_m, 0.1, 1.0);
+      const double relief = std::clamp(cloud.growth * cloud.size_m / kFullRelief_m, 0.2, 1.0);
       const glm::dvec3 base(cloud.place_m, options.base_altitude_m);
       for (const CloudSphere& sphere : cloud.spheres) {
         spheres.push_back(
@@ -289,44 +306,38 @@ class SphereUnion {
       }
     }
     relief_.resize(depth_m_.size());
+    const std::vector<std::vector<std::uint32_t>> of_layer = ByLayer(spheres);
     tbb::parallel_for(0, layers_, [&](int layer) {
       std::vector<float> relief(Row(1, 0) - Row(0, 0));
-      for (const PlacedSphere& sphere : spheres) Add(sphere, layer, relief);
+      for (const std::uint32_t number : of_layer[static_cast<std::size_t>(layer)]) {
+        Add(spheres[number], layer, relief);
+      }
       Finish(layer, relief);
     });
   }
 
-  /// F_0 and the size of the relief on it.
-  struct Heap {
-    double depth_m;
-    double relief;  // of the noise, relative to that of large clouds
+  /// The grid around a point.
+  struct Cell {
+    std::array<std::size_t, 8> corner;  // x fastest
+    glm::dvec3 share;
   };
-  [[nodiscard]] Heap At(const glm::dvec3& point) const {
+  [[nodiscard]] Cell CellOf(const glm::dvec3& point) const {
     const glm::dvec3 at = (point - glm::dvec3(0.0, 0.0, bottom_m_)) / kGrid_m;
-    const glm::dvec3 low = glm::floor(at);
-    const glm::dvec3 share = at - low;
-    const int z = std::clamp(static_cast<int>(low.z), 0, layers_ - 2);
-    const std::size_t x0 = Wrapped(static_cast<int>(low.x)),
-                      x1 = Wrapped(static_cast<int>(low.x) + 1);
-    const std::size_t y0 = Wrapped(static_cast<int>(low.y)),
-                      y1 = Wrapped(static_cast<int>(low.y) + 1);
-    const auto mixed = [&](const auto& values) {
-      const auto along_x = [&](int layer, std::size_t row) {
-        const auto* of_row = values.data() + Row(layer, row);
-        const auto west = static_cast<double>(of_row[x0]);
-        return west + share.x * (static_cast<double>(of_row[x1]) - west);
-      };
-      const auto along_xy = [&](int layer) {
-        const double south = along_x(layer, y0);
-        return south + share.y * (along_x(layer, y1) - south);
-      };
-      const double below = along_xy(z);
-      return below + share.z * (along_xy(z + 1) - below);
-    };
-    return {mixed(depth_m_), mixed(relief_) / 255.0};
+    const std::array<int, 3> low{WholePart(at.x), WholePart(at.y), WholePart(at.z)};
+    const int z = std::clamp(low[2], 0, layers_ - 2);
+    const std::size_t x0 = Wrapped(low[0]), x1 = Wrapped(low[0] + 1);
+    const std::size_t south = Row(z, Wrapped(low[1])), north = Row(z, Wrapped(low[1] + 1));
+    const std::size_t up = Row(1, 0);
+    return {{south + x0, south + x1, north + x0, north + x1, south + up + x0, south + up + x1,
+             north + up + x0, north + up + x1},
+            at - glm::dvec3(low[0], low[1], low[2])};
   }
+  /// Returns F_0.
+  [[nodiscard]] double Depth_m(const Cell& cell) const { return Mixed(depth_m_, cell); }
+  /// Returns the size of the relief, relative to that of large clouds.
+  [[nodiscard]] double Relief(const Cell& cell) const { return Mixed(relief_, cell) / 255.0; }
 
-  /// Returns an upper bound of At in a box.
+  /// Returns an upper bound of F_0 in a box.
   [[nodiscard]] double LargestIn(const glm::dvec3& low, const glm::dvec3& high) const {
     const auto number = [&](double at) { return static_cast<int>(std::floor(at / kGrid_m)); };
     const int first = std::clamp(number(low.z - bottom_m_), 0, layers_ - 1);
@@ -343,13 +354,32 @@ class SphereUnion {
   }
 
  private:
-  static constexpr double kFullRelief_m = 1300.0;  // size of a cloud with the full relief
+  static constexpr double kFullRelief_m = 1200.0;  // size of a cloud with the full relief
   static constexpr double kEmpty_m = -200.0;
 
   struct PlacedSphere {
     glm::dvec3 centre_m;
     double radius_m, relief;
   };
+
+  [[nodiscard]] static int WholePart(double value) {
+    const int truncated = static_cast<int>(value);
+    return truncated - (value < truncated ? 1 : 0);
+  }
+  template <typename Value>
+  [[nodiscard]] static double Mixed(const std::vector<Value>& values, const Cell& cell) {
+    const Value* all = values.data();
+    const auto along_x = [&](std::size_t first) {
+      const auto west = static_cast<double>(all[cell.corner[first]]);
+      return west + cell.share.x * (static_cast<double>(all[cell.corner[first + 1]]) - west);
+    };
+    const auto along_xy = [&](std::size_t first) {
+      const double south = along_x(first);
+      return south + cell.share.y * (along_x(first + 2) - south);
+    };
+    const double below = along_xy(0);
+    return below + cell.share.z * (along_xy(4) - below);
+  }
 
   [[nodiscard]] std::size_t Wrapped(int number) const {
     if (number >= 0 && number < side_) return static_cast<std::size_t>(number);
@@ -361,13 +391,34 @@ class SphereUnion {
            static_cast<std::size_t>(side_);
   }
 
+  /// Returns the distance from a sphere's surface within which it is part of the union: noise and
+  /// offset raise the surface by less. The surface of a small lobe is far from no larger sphere, whose
+  /// terms reach further.
+  [[nodiscard]] static double ReachBeyond(const PlacedSphere& sphere) {
+    return std::min(kCloudMargin_m + kMostRaised_m * sphere.relief, 20.0 + 0.8 * sphere.radius_m);
+  }
+
+  /// Returns the numbers of the spheres that reach each layer.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> ByLayer(
+      const std::vector<PlacedSphere>& spheres) const {
+    std::vector<std::vector<std::uint32_t>> of_layer(static_cast<std::size_t>(layers_));
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const double height = spheres[i].centre_m.z - bottom_m_;
+      const double reach = spheres[i].radius_m + ReachBeyond(spheres[i]);
+      const int first = std::max(0, static_cast<int>(std::ceil((height - reach) / kGrid_m)));
+      const int last =
+          std::min(layers_ - 1, static_cast<int>(std::floor((height + reach) / kGrid_m)));
+      for (int layer = first; layer <= last; ++layer) {
+        of_layer[static_cast<std::size_t>(layer)].push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+    return of_layer;
+  }
+
   /// Adds the term of a sphere to the sums of a layer, and its relief with the term as weight.
   void Add(const PlacedSphere& sphere, int layer, std::vector<float>& relief) {
     const double dz = bottom_m_ + kGrid_m * layer - sphere.centre_m.z;
-    // Noise and offset raise the surface by less than this.
-    // The surface of a small lobe is far from no larger sphere, whose terms reach further.
-    const double beyond =
-        std::min(kCloudMargin_m + kMostRaised_m * sphere.relief, 20.0 + 0.8 * sphere.radius_m);
+    const double beyond = ReachBeyond(sphere);
     const double reach = sphere.radius_m + beyond;
     const double square = reach * reach - dz * dz;
     if (square <= 0.0) return;
@@ -378,19 +429,35 @@ class SphereUnion {
     const auto last = [&](double at) {
       return static_cast<int>(std::floor((at + across) / kGrid_m));
     };
+    const int begin_x = first(sphere.centre_m.x), end_x = last(sphere.centre_m.x);
+    const auto radius = static_cast<float>(sphere.radius_m), least = static_cast<float>(-beyond);
+    const auto sphere_relief = static_cast<float>(sphere.relief);
     for (int y = first(sphere.centre_m.y); y <= last(sphere.centre_m.y); ++y) {
       const double dy = kGrid_m * y - sphere.centre_m.y;
+      const auto aside = static_cast<float>(dy * dy + dz * dz);
       const std::size_t row = Wrapped(y) * static_cast<std::size_t>(side_);
       float* sums = depth_m_.data() + Row(layer, 0) + row;
-      for (int x = first(sphere.centre_m.x); x <= last(sphere.centre_m.x); ++x) {
-        const double dx = kGrid_m * x - sphere.centre_m.x;
-        const double depth = sphere.radius_m - std::sqrt(dx * dx + dy * dy + dz * dz);
-        if (depth < -beyond) continue;
-        const auto term = static_cast<float>(PortableExp2(depth / (kUnion_m * std::numbers::ln2)));
+      for (int x = begin_x; x <= end_x; ++x) {
+        const auto dx = static_cast<float>(kGrid_m * x - sphere.centre_m.x);
+        const float depth = radius - std::sqrt(dx * dx + aside);
+        if (depth < least) continue;
+        const float term = UnionTerm(depth);
         sums[Wrapped(x)] += term;
-        relief[row + Wrapped(x)] += term * static_cast<float>(sphere.relief);
+        relief[row + Wrapped(x)] += term * sphere_relief;
       }
     }
+  }
+
+  /// Returns exp(depth / s), to 2e-5 of it. @param depth_m  below 1000.
+  [[nodiscard]] static float UnionTerm(float depth_m) {
+    constexpr auto kPerMetre = static_cast<float>(1.0 / (kUnion_m * std::numbers::ln2));
+    const float x = depth_m * kPerMetre;
+    const auto truncated = static_cast<std::int32_t>(x);
+    const float f = (x - static_cast<float>(truncated)) * std::numbers::ln2_v<float>;
+    const float power =
+        1.0F +
+        f * (1.0F + f * (1.0F / 2 + f * (1.0F / 6 + f * (1.0F / 24 + f * (1.0F / 120 + f / 720)))));
+    return power * std::bit_cast<float>(static_cast<std::uint32_t>(truncated + 127) << 23U);
   }
 
   /// Replaces sums by depths and mean reliefs.
@@ -439,27 +506,40 @@ class HeapShape final : public CloudShape {
 
   [[nodiscard]] bool MayHoldCloud(const glm::dvec3& low, const glm::dvec3& high) const override {
     return high.z > base_m_ - kDeepestBase_m &&
-           spheres_.LargestIn(low, high) + kMostRaised_m > -kCloudMargin_m;
+           spheres_.LargestIn(low, high) + std::max(0.0, offset_m_ + most_raised_m_) >
+               -kCloudMargin_m;
   }
 
  private:
   static constexpr double kLarge_m = 70.0, kSmall_m = 60.0, kBend_m = 22.0, kSmooth_m = 10.0;
-  static constexpr double kDeepestBase_m = 120.0;
+  static constexpr double kBaseSteepness = 0.8;
+  static constexpr double kDeepestBase_m = 120.0;  // bound of kBaseSteepness times the waves
 
   [[nodiscard]] double Depth(const glm::dvec3& point, double offset_m) const {
-    const auto [depth, relief] = spheres_.At(point);
-    const double over_base = 0.8 * (point.z - base_m_);
-    if (depth + kMostRaised_m * relief <= -kCloudMargin_m || over_base < -kDeepestBase_m) {
+    const double over_base = kBaseSteepness * (point.z - base_m_);
+    const SphereUnion::Cell cell = spheres_.CellOf(point);
+    const double depth = spheres_.Depth_m(cell);
+    // Noise is evaluated only where it can change the result.
+    if (depth + std::max(0.0, offset_m + most_raised_m_) <= -kCloudMargin_m) {
       return kLeastCloudDepth_m;
     }
-    if (std::min(depth - most_lowered_m_, over_base - kDeepestBase_m) > kMostCloudDepth_m) {
-      return kMostCloudDepth_m;
-    }
+    const double relief = spheres_.Relief(cell);
+    const double highest = depth + relief * (offset_m + most_raised_m_);
+    if (highest <= -kCloudMargin_m || over_base < -kDeepestBase_m) return kLeastCloudDepth_m;
+    const double lowest = depth + relief * (offset_m - most_lowered_m_);
+    if (std::min(lowest, over_base - kDeepestBase_m) > kMostCloudDepth_m) return kMostCloudDepth_m;
+    if (lowest > over_base + kDeepestBase_m) return OverBase(point, relief);
+    const double heap = depth + relief * (offset_m + Displacement(point));
+    return heap < over_base - kDeepestBase_m ? heap : std::min(heap, OverBase(point, relief));
+  }
+
+  /// Returns the depth that the waves of the base leave.
+  [[nodiscard]] double OverBase(const glm::dvec3& point, double relief) const {
     const double base =
         base_m_ + base_waves_m_.At(glm::dvec2(point)) +
         10.0 * relief *
             ShapeNoise::Billow().At({point.x / kSmallTile_m, point.y / kSmallTile_m, 0.5});
-    return std::min(depth + relief * (offset_m + Displacement(point)), 0.8 * (point.z - base));
+    return kBaseSteepness * (point.z - base);
   }
 
   [[nodiscard]] double Displacement(const glm::dvec3& point) const {
@@ -475,14 +555,20 @@ class HeapShape final : public CloudShape {
             ShapeNoise::Billow().At(glm::dvec3(bent.x, bent.y, 0.4 * bent.z) / kLargeTile_m) +
         kSmall_m * ShapeNoise::Billow().At(bent / kSmallTile_m) + kSmooth_m * bend.x;
     const double height = std::clamp((point.z - base_m_) / 250.0, 0.0, 1.0);
-    const double raised = (0.45 + 0.55 * height) * noise;
-    return raised > 0.0 ? raised / (1.0 + raised / kMostNoise_m) : raised;
+    return Softened((0.45 + 0.55 * height) * noise);
+  }
+
+  /// Returns noise below kMostNoise_m.
+  [[nodiscard]] static double Softened(double noise) {
+    return noise > 0.0 ? noise / (1.0 + noise / kMostNoise_m) : noise;
   }
 
   double base_m_, rise_m_;
-  double most_lowered_m_ = kMostOffset_m - kLarge_m * ShapeNoise::Billow().Least() -
-                           kSmall_m * ShapeNoise::Billow().Least() -
-                           kSmooth_m * ShapeNoise::Smooth().Least();  // by which noise can lower F
+  // By which noise can lower and raise F.
+  double most_lowered_m_ = -(kLarge_m + kSmall_m) * ShapeNoise::Billow().Least() -
+                           kSmooth_m * ShapeNoise::Smooth().Least();
+  double most_raised_m_ = Softened((kLarge_m + kSmall_m) * ShapeNoise::Billow().Largest() +
+                                   kSmooth_m * ShapeNoise::Smooth().Largest());
   SphereUnion spheres_;
   PeriodicMap base_waves_m_;
   double offset_m_ = 0.0;

@@ -6,12 +6,12 @@
 // drawn with an exponent of -1.6 from 120 m on, because large clouds fill less of their extent, and
 // fall off exponentially from 1.3 km on. All sizes are drawn before any cloud is placed, and every
 // cloud is placed, the largest first: the sizes keep their distribution whatever the cover is. Clouds
-// stand where they touch no other if there is such a place, and closer together where noise of 5 km
+// stand where they touch no other if there is such a place, and closer together where noise of 2.5 km
 // is high.
 //
 // One cloud: plumes side by side on a base, five for a cloud of 120 m and 20 for one of 1 km, each a
-// chain of spheres; lobes on the upper and outer side of every sphere, and lobes on the lobes. Their
-// union is
+// chain of spheres that leans to the middle of the cloud; lobes on the upper and outer side of every
+// sphere, and lobes on the lobes. Their union is
 //
 //   F_0 = s ln(sum_i exp((r_i - |p - c_i|) / s)),   s = 14 m, on a grid of 40 m
 //

@@ -122,6 +122,36 @@ TEST(CloudGenerator, ShapeChangesSlowlyAndCompletely) {
   }
 }
 
+TEST(CloudGenerator, NoPartOfAPeriodStandsOut) {
+  // A period that is seen from above repeats visibly if one part of it has another cover. Without
+  // longer structures, the covers of 16 parts of 5 km scatter by this much, with 50 cells each.
+  constexpr int kParts = 4;
+  for (const CloudGenus genus : {CloudGenus::kStratocumulus, CloudGenus::kAltocumulus}) {
+    CloudOptions options = DefaultCloudOptions(genus);
+    options.seed = 14;
+    const OpticalDepthMap map = MapOf(MakeCloudField(options));
+    const int side = map.side / kParts;
+    double sum = 0.0, squares = 0.0;
+    for (int part = 0; part < kParts * kParts; ++part) {
+      double covered = 0.0;
+      for (int i = 0; i < side * side; ++i) {
+        const int x = part % kParts * side + i % side, y = part / kParts * side + i / side;
+        const auto at = static_cast<std::size_t>(y * map.side + x);
+        covered += map.optical_depth[at] > 0.3F ? 1.0 : 0.0;
+      }
+      const double cover = covered / (side * side);
+      sum += cover / (kParts * kParts);
+      squares += cover * cover / (kParts * kParts);
+    }
+    EXPECT_LT(std::sqrt(squares - sum * sum), 0.2) << kCloudGenusNames.Of(genus);
+    // Lovejoy (1982) has 1.35 for clouds of all kinds; rims of thin layers are rougher.
+    const auto clouds = tests::CountClouds(map, CoveredOpticalDepth(genus));
+    const double dimension = tests::PerimeterDimension(clouds, map.spacing_m);
+    EXPECT_GT(dimension, 1.3) << kCloudGenusNames.Of(genus);
+    EXPECT_LT(dimension, 1.6) << kCloudGenusNames.Of(genus);
+  }
+}
+
 TEST(CloudGenerator, WindCarriesTheField) {
   CloudOptions options = SmallOptions(CloudGenus::kStratocumulus, 8);
   options.wind_m_per_s = {12.0, -5.0};
