@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The description of a scene: place, time, camera, air, ground and lamps; and the reader of
+// The description of a scene: place, time, camera, air, clouds, ground and lamps; and the reader of
 // scene.toml.
 #pragma once
 

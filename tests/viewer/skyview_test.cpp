@@ -276,7 +276,7 @@ TEST_F(Skyview, CloudsOfASceneGiveAMessage) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "cloudy.toml",
             std::string(kBareSceneText) + "[[cloud]]\ngenus = \"cirrus\"\n");
-  const std::string options = " --headless --size 64x36 --screenshot " + InFolder("v.png");
+  const std::string options = " --headless --size 16x9 --screenshot " + InFolder("v.png");
   const std::string file = InFolder("cloudy.toml");
   const Outcome outcome = Run(file + options);
   EXPECT_EQ(outcome.status, 0) << outcome.error;
