@@ -213,7 +213,9 @@ std::int32_t CloudCells::FullCellAt(const glm::dvec3& point, const glm::dvec3& a
     const std::int32_t cell = place < 0 ? -1 : stored_[static_cast<std::size_t>(place)];
     return cell < static_cast<std::int32_t>(full()) ? cell : -1;
   };
-  for (int reach = 0; reach <= 2; ++reach) {
+  const std::int32_t inside = full_at(here[0], here[1], here[2]);
+  if (inside >= 0) return inside;
+  for (int reach = 1; reach <= 2; ++reach) {
     std::int32_t nearest = -1;
     double least = 1e9;
     EachAround(here, reach, [&](int x, int y, int z) {

@@ -22,8 +22,9 @@ constexpr double kInfinite_m = std::numeric_limits<double>::infinity();
 constexpr double kLeastCosine = 0.03;
 constexpr double kLeastDepth = 0.1;  // of rays that count
 constexpr double kLeastOfMean = 0.1;
-// Nodes with little light stay near the factor that fits all of them alike.
-constexpr double kRidge = 0.01;
+// Weights of the deviation from the factor that fits all nodes alike, and of the difference between
+// neighbouring nodes, relative to the mean weight of a node: nodes with little light follow others.
+constexpr double kRidge = 0.01, kSmoothness = 0.1;
 
 /// A ray with its light by both methods.
 struct FactorRay {
@@ -113,9 +114,15 @@ CloudFactor FitCloudFactor(const CloudField& field, const CloudGather& gather,
   }
   if (!(trace > 0.0)) return {};
   const double ridge = kRidge * trace / kCloudFactorNodes;
+  const double smooth = kSmoothness * trace / kCloudFactorNodes;
   for (std::size_t i = 0; i < kCloudFactorNodes; ++i) {
     equations.matrix[i * (kCloudFactorNodes + 1)] += ridge;
     equations.right_side[i] += ridge * common;
+    if (i == 0) continue;
+    equations.matrix[i * (kCloudFactorNodes + 1)] += smooth;
+    equations.matrix[(i - 1) * (kCloudFactorNodes + 1)] += smooth;
+    equations.matrix[i * kCloudFactorNodes + i - 1] -= smooth;
+    equations.matrix[(i - 1) * kCloudFactorNodes + i] -= smooth;
   }
   const std::vector<double> solved = SolvePositiveDefinite(equations.matrix, equations.right_side);
   CloudFactor factor;

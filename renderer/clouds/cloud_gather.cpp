@@ -10,12 +10,14 @@ namespace {
 
 constexpr double kDeepestNode = 40.0;
 constexpr double kMomentsEvery_m = 20.0;
+// The optical depth to the sun is that of the middle of stretches of this length.
+constexpr double kSunEvery_m = 10.0;
 // A share of the depth under the surface is a safe step outside, because noise makes the depth
 // steeper than distance.
 constexpr double kStepOutside = 0.3;
 constexpr int kHalvings = 3;
 // The rest of the light of a ray is that of its beginning once this is left.
-constexpr double kLeastTransmittance = 2e-3;
+constexpr double kLeastTransmittance = 5e-3;
 constexpr int kMostSteps = 20000;
 // Bent rays are followed in pieces that deviate from their tangent by less than 0.4 m on Earth.
 constexpr double kStraight_m = 2000.0;
@@ -53,6 +55,7 @@ struct CloudGather::March {
   double depth = 0.0;   // to the eye, not scaled
   double weight = 0.0;  // of all light so far
   double weighted_m = 0.0;
+  double to_sun = 0.0, to_sun_until_m = -1.0;  // the optical depth, and where its stretch ends
   // Light of higher orders at the last place of moments.
   double moments_at_m = -1e9, sun = 0.0, sky = 0.0, ground = 0.0;
 };
@@ -81,7 +84,14 @@ void CloudGather::Inside::Add(const CloudGather& gather, March& march) const {
   if (depth <= 0.0) return;
   const CloudOptics& optics = *gather.optics_;
   const double scale = optics.extinction_scale();
-  const double to_sun = OpticalDepthToSun(*gather.field_, *gather.map_, point);
+  const double begin_m = middle_m - 0.5 * length_m;
+  if (begin_m >= march.to_sun_until_m) {
+    const double stretch_m = std::max(length_m, kSunEvery_m);
+    march.to_sun_until_m = begin_m + stretch_m;
+    march.to_sun =
+        OpticalDepthToSun(*gather.field_, *gather.map_, march.At(begin_m + 0.5 * stretch_m));
+  }
+  const double to_sun = march.to_sun;
   if (middle_m - march.moments_at_m > kMomentsEvery_m) {
     const CloudCells::Mixture around = gather.sun_->cells().Around(point);
     march.moments_at_m = middle_m;
@@ -122,20 +132,25 @@ CloudRayParts CloudGather::Along(const CloudRay& ray, double length_m) const {
   const double end_m = std::min(length_m, kFarthestCloud_m);
   const double top_m = field_->top_altitude_m();
   double at_m = 0.0, outside_m = 0.0;  // the last step outside
+  double brick_until_m = 0.0;          // end of the brick with cloud around the ray
   for (int step = 0; step < kMostSteps && at_m < end_m; ++step) {
     glm::dvec3 point = march.At(at_m);
-    const glm::dvec3 direction = march.DirectionAt(at_m);
-    if (point.z > top_m && direction.z >= 0.0) break;
-    const CloudSpan span = field_->SpanAhead(point, direction);
-    if (span.majorant_per_m == 0.0) {
-      if (march.bend_per_m == 0.0 && !(span.length_m < end_m - at_m)) break;
-      at_m += march.bend_per_m == 0.0 ? span.length_m : std::min(span.length_m, kStraight_m);
-      outside_m = 0.0;
-      continue;
+    if (at_m >= brick_until_m) {
+      const glm::dvec3 direction = march.DirectionAt(at_m);
+      if (point.z > top_m && direction.z >= 0.0) break;
+      const CloudSpan span = field_->SpanAhead(point, direction);
+      if (span.majorant_per_m == 0.0) {
+        if (march.bend_per_m == 0.0 && !(span.length_m < end_m - at_m)) break;
+        at_m += march.bend_per_m == 0.0 ? span.length_m : std::min(span.length_m, kStraight_m);
+        outside_m = 0.0;
+        continue;
+      }
+      brick_until_m = at_m + span.length_m;
     }
     double depth_m = field_->SignedDepth_m(point);
     if (depth_m <= 0.0) {
-      outside_m = std::max(options_.least_step_m, -kStepOutside * depth_m);
+      outside_m = std::min(std::max(options_.least_step_m, -kStepOutside * depth_m),
+                           std::max(options_.least_step_m, brick_until_m - at_m));
       at_m += outside_m;
       continue;
     }

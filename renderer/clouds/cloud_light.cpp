@@ -8,6 +8,17 @@
 #include "renderer/clouds/cloud_optics.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+/// Throws InputError of the path tracer.
+const CloudSurroundings& CheckedSurroundings(const CloudField& field,
+                                             const CloudScatterers& scatterers,
+                                             const CloudSurroundings& surroundings) {
+  static_cast<void>(CloudPathTracer(field, scatterers, surroundings));
+  return surroundings;
+}
+
+}  // namespace
 
 /// What all suns share.
 struct CloudLight::FieldLight {
@@ -70,9 +81,10 @@ struct CloudLight::SunLight {
 
 CloudLight::CloudLight(const CloudField& field, const CloudScatterers& scatterers,
                        const CloudSurroundings& surroundings, const CloudLightOptions& options)
-    : CloudLight((CloudPathTracer(field, scatterers, surroundings),
-                  std::make_shared<const FieldLight>(field, scatterers, surroundings, options)),
-                 surroundings.to_sun) {}
+    : CloudLight(
+          std::make_shared<const FieldLight>(
+              field, scatterers, CheckedSurroundings(field, scatterers, surroundings), options),
+          surroundings.to_sun) {}
 
 CloudLight::CloudLight(std::shared_ptr<const FieldLight> field_light, const glm::dvec3& to_sun)
     : field_light_(std::move(field_light)),

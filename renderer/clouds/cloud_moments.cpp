@@ -97,6 +97,75 @@ CloudTrack TrackAlong(const CloudCells& cells, const glm::dvec3& travel, int num
   return track;
 }
 
+/// Power that the scaled beam loses, for unit irradiance across it.
+struct CollidedLight {
+  std::vector<double> of_cell_m2;  // by full cell
+  double lost_m2 = 0.0;            // in wisps far from full cells
+
+  [[nodiscard]] double Sum_m2() const {
+    double sum = lost_m2;
+    for (const double each : of_cell_m2) sum += each;
+    return sum;
+  }
+};
+
+/// Lines of beams are shared among this number of sums, which are added in order.
+constexpr int kBeamSums = 16;
+
+CollidedLight CollidedIn(const CloudCells& cells, const CloudSunMap& map, double extinction_scale) {
+  std::vector<CollidedLight> sums(kBeamSums);
+  tbb::parallel_for(0, kBeamSums, [&](int i) {
+    CollidedLight& sum = sums[static_cast<std::size_t>(i)];
+    sum.of_cell_m2.assign(cells.full(), 0.0);
+    const auto add = [&](const CloudSunMap::BeamPart& part) {
+      const double collided_m2 =
+          -map.to_sun().z * part.area_m2 * std::exp(-extinction_scale * part.depth_above) *
+          std::expm1(-extinction_scale * (part.depth_below - part.depth_above));
+      const std::int32_t cell = cells.FullCellAt(part.middle, -map.to_sun());
+      (cell < 0 ? sum.lost_m2 : sum.of_cell_m2[static_cast<std::size_t>(cell)]) += collided_m2;
+    };
+    for (int line = map.lines() * i / kBeamSums; line < map.lines() * (i + 1) / kBeamSums; ++line) {
+      map.EachPartOfLine(line, add);
+    }
+  });
+  CollidedLight all = std::move(sums.front());
+  for (std::size_t i = 1; i < sums.size(); ++i) {
+    all.lost_m2 += sums[i].lost_m2;
+    for (std::size_t cell = 0; cell < all.of_cell_m2.size(); ++cell) {
+      all.of_cell_m2[cell] += sums[i].of_cell_m2[cell];
+    }
+  }
+  return all;
+}
+
+/// Returns the light of fine cells by coarse ones.
+CollidedLight OnCoarseCells(const CollidedLight& fine, const CloudCells& fine_cells,
+                            const CloudCells& cells, const glm::dvec3& ahead) {
+  CollidedLight coarse{std::vector<double>(cells.full(), 0.0), fine.lost_m2};
+  for (std::size_t i = 0; i < fine_cells.full(); ++i) {
+    const std::int32_t cell = cells.FullCellAt(fine_cells.Middle(i), ahead);
+    (cell < 0 ? coarse.lost_m2 : coarse.of_cell_m2[static_cast<std::size_t>(cell)]) +=
+        fine.of_cell_m2[i];
+  }
+  return coarse;
+}
+
+/// Returns the mean irradiance of the scaled beam in full cells. What is lost far from them is given
+/// to all of them.
+std::vector<float> BeamIn(const CloudCells& cells, const CollidedLight& collided,
+                          double extinction_scale) {
+  const glm::dvec3 cell_m = cells.cell_m();
+  const double volume_m3 = cell_m.x * cell_m.y * cell_m.z;
+  const double kept_m2 = collided.Sum_m2() - collided.lost_m2;
+  const double all = kept_m2 > 0.0 ? collided.Sum_m2() / kept_m2 : 1.0;
+  std::vector<float> beam(cells.full());
+  for (std::size_t cell = 0; cell < beam.size(); ++cell) {
+    beam[cell] = static_cast<float>(all * collided.of_cell_m2[cell] /
+                                    (extinction_scale * cells.Extinction_per_m(cell) * volume_m3));
+  }
+  return beam;
+}
+
 /// Arrays for the tracks of one thread.
 struct TrackRoom {
   lut::AlignedFloats source, slope_per_m, sum_m;
@@ -109,44 +178,8 @@ struct TrackRoom {
 struct CloudMomentSolver::Source {
   std::vector<float> beam;          // mean irradiance of the scaled beam in full cells; or nothing
   CloudHarmonics beam_harmonics{};  // of the beam's direction of travel
-  double collided_m2 = 0.0;         // power that the scaled beam loses, for unit irradiance
   float from_above = 0.0F, from_below = 0.0F;  // radiance that enters
-
-  [[nodiscard]] static Source OfBeam(const CloudCells& cells, const CloudSunMap& map,
-                                     double extinction_scale);
 };
-
-CloudMomentSolver::Source CloudMomentSolver::Source::OfBeam(const CloudCells& cells,
-                                                            const CloudSunMap& map,
-                                                            double extinction_scale) {
-  std::vector<double> collided_m2(cells.full(), 0.0);
-  double lost_m2 = 0.0, kept_m2 = 0.0;
-  map.EachPart([&](const CloudSunMap::BeamPart& part) {
-    const double collided = map.to_sun().z * part.area_m2 *
-                            (std::exp(-extinction_scale * part.depth_above) -
-                             std::exp(-extinction_scale * part.depth_below));
-    const std::int32_t cell = cells.FullCellAt(part.middle, -map.to_sun());
-    if (cell < 0) {
-      lost_m2 += collided;
-    } else {
-      kept_m2 += collided;
-      collided_m2[static_cast<std::size_t>(cell)] += collided;
-    }
-  });
-  Source source;
-  source.beam_harmonics = CloudHarmonicsOf(-map.to_sun());
-  source.collided_m2 = kept_m2 + lost_m2;
-  source.beam.resize(cells.full());
-  const glm::dvec3 cell_m = cells.cell_m();
-  const double volume_m3 = cell_m.x * cell_m.y * cell_m.z;
-  // Wisps far from all full cells give their light to all cells.
-  const double all = kept_m2 > 0.0 ? (kept_m2 + lost_m2) / kept_m2 : 1.0;
-  for (std::size_t cell = 0; cell < cells.full(); ++cell) {
-    source.beam[cell] = static_cast<float>(
-        all * collided_m2[cell] / (extinction_scale * cells.Extinction_per_m(cell) * volume_m3));
-  }
-  return source;
-}
 
 /// The cells of one size and the tracks through them.
 class CloudMomentSolver::Grid {
@@ -394,16 +427,22 @@ SolvedCloudMoments CloudMomentSolver::Cascade(const std::vector<Source>& sources
 }
 
 SolvedCloudMoments CloudMomentSolver::Sun(const CloudSunMap& map) const {
-  std::vector<Source> sources;
-  for (const auto& grid : grids_) {
-    sources.push_back(Source::OfBeam(*grid->cells(), map, optics_->extinction_scale()));
+  const double scale = optics_->extinction_scale();
+  const CollidedLight collided = CollidedIn(cells(), map, scale);
+  std::vector<Source> sources(grids_.size());
+  for (std::size_t i = 0; i < grids_.size(); ++i) {
+    const CloudCells& of = *grids_[i]->cells();
+    const bool is_finest = i + 1 == grids_.size();
+    sources[i].beam_harmonics = CloudHarmonicsOf(-map.to_sun());
+    sources[i].beam = BeamIn(
+        of, is_finest ? collided : OnCoarseCells(collided, cells(), of, -map.to_sun()), scale);
   }
   SolvedCloudMoments solved = Cascade(sources);
   if (cells().is_periodic()) {
     // The scaled beam has light that droplets turn by a few degrees.
     const glm::dvec3 size_m =
         cells().cell_m() * glm::dvec3(cells().count()[0], cells().count()[1], 1.0);
-    const double scaled = map.to_sun().z - sources.back().collided_m2 / (size_m.x * size_m.y);
+    const double scaled = map.to_sun().z - collided.Sum_m2() / (size_m.x * size_m.y);
     solved.down_at_base += scaled - map.to_sun().z * map.MeanTransmittance();
   }
   return solved;

@@ -77,7 +77,13 @@ class CloudSunMap {
   /// exp(-depth_above) - exp(-depth_below), times the area, is the light of unit downward flux that
   /// collides: exactly what the beams lose.
   template <typename Visit>
-  void EachPart(const Visit& visit) const;
+  void EachPart(const Visit& visit) const {
+    for (int line = 0; line < lines(); ++line) EachPartOfLine(line, visit);
+  }
+  /// Returns the number of lines of beams, which can be visited one by one.
+  [[nodiscard]] int lines() const { return nodes_[1]; }
+  template <typename Visit>
+  void EachPartOfLine(int line, const Visit& visit) const;
 
  private:
   /// Returns the optical depths of the beam of a node at a level and at the next one above.
@@ -124,16 +130,14 @@ class CloudSunMap {
                                        const glm::dvec3& point);
 
 template <typename Visit>
-void CloudSunMap::EachPart(const Visit& visit) const {
-  for (int line = 0; line < nodes_[1]; ++line) {
-    for (int column = 0; column < nodes_[0]; ++column) {
-      const std::size_t node = NodeOf(column, line);
-      for (int level = levels_ - 1; level >= 0; --level) {
-        if (!HasCloud(node, level)) continue;
-        const Ends ends = Between(node, level);
-        visit(BeamPart{PointAt(column, line, level + 0.5), static_cast<double>(ends.above),
-                       static_cast<double>(ends.below), cell_m_.x * cell_m_.y});
-      }
+void CloudSunMap::EachPartOfLine(int line, const Visit& visit) const {
+  for (int column = 0; column < nodes_[0]; ++column) {
+    const std::size_t node = NodeOf(column, line);
+    for (int level = levels_ - 1; level >= 0; --level) {
+      if (!HasCloud(node, level)) continue;
+      const Ends ends = Between(node, level);
+      visit(BeamPart{PointAt(column, line, level + 0.5), static_cast<double>(ends.above),
+                     static_cast<double>(ends.below), cell_m_.x * cell_m_.y});
     }
   }
 }

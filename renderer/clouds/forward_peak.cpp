@@ -31,6 +31,27 @@ double PeakAngleAt(std::size_t i) {
   return kPi * std::pow(static_cast<double>(i) / (kAngles - 1), 2);
 }
 
+/// A place between the nodes of an axis.
+struct PeakPlace {
+  std::size_t node;
+  double share;  // of the next node
+};
+
+PeakPlace PlaceOfAngle(double cos_scattering) {
+  const double angle = std::acos(std::clamp(cos_scattering, -1.0, 1.0));
+  const double at = std::sqrt(angle / kPi) * (kAngles - 1);
+  const auto node = std::min(static_cast<std::size_t>(at), kAngles - 2);
+  return {node, at - static_cast<double>(node)};
+}
+
+PeakPlace PlaceOfDepth(double depth) {
+  constexpr double kDeepest = ForwardPeak::kDeepest;
+  static const double per_depth = (kDepths - 1) / std::log(kDeepest / kShallowest);
+  const double at = per_depth * std::log(std::clamp(depth, kShallowest, kDeepest) / kShallowest);
+  const auto node = std::min(static_cast<std::size_t>(at), kDepths - 2);
+  return {node, at - static_cast<double>(node)};
+}
+
 /// The factors of w_l P_l that are added to p, for all degrees and depths.
 struct PeakFactors {
   std::vector<double> effective, broadened;  // [depth][degree]
@@ -81,31 +102,6 @@ ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
     }
   });
 }
-
-namespace {
-
-/// A place between the nodes of an axis.
-struct PeakPlace {
-  std::size_t node;
-  double share;  // of the next node
-};
-
-PeakPlace PlaceOfAngle(double cos_scattering) {
-  const double angle = std::acos(std::clamp(cos_scattering, -1.0, 1.0));
-  const double at = std::sqrt(angle / kPi) * (kAngles - 1);
-  const auto node = std::min(static_cast<std::size_t>(at), kAngles - 2);
-  return {node, at - static_cast<double>(node)};
-}
-
-PeakPlace PlaceOfDepth(double depth) {
-  constexpr double kDeepest = ForwardPeak::kDeepest;
-  static const double per_depth = (kDepths - 1) / std::log(kDeepest / kShallowest);
-  const double at = per_depth * std::log(std::clamp(depth, kShallowest, kDeepest) / kShallowest);
-  const auto node = std::min(static_cast<std::size_t>(at), kDepths - 2);
-  return {node, at - static_cast<double>(node)};
-}
-
-}  // namespace
 
 double ForwardPeak::At(const std::vector<float>& table, double cos_scattering, double depth) {
   const PeakPlace angle = PlaceOfAngle(cos_scattering), along = PlaceOfDepth(depth);
