@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/clouds/cloud_optics.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -109,6 +108,7 @@ const CloudGroundIrradiance& CloudLight::ground_irradiance() const {
   return sun_light_->irradiance;
 }
 const CloudField& CloudLight::field() const { return *field_light_->field; }
+const CloudOptics& CloudLight::optics() const { return *field_light_->optics; }
 const CloudSunMap& CloudLight::sun_map() const { return sun_light_->map; }
 const CloudFactor& CloudLight::factor() const { return sun_light_->factor; }
 const SolvedCloudMoments& CloudLight::sun_moments() const { return sun_light_->moments; }

@@ -25,6 +25,7 @@
 #include "renderer/clouds/cloud_field.h"
 #include "renderer/clouds/cloud_gather.h"
 #include "renderer/clouds/cloud_moments.h"
+#include "renderer/clouds/cloud_optics.h"
 #include "renderer/clouds/cloud_path_tracer.h"
 #include "renderer/clouds/cloud_sun_map.h"
 
@@ -85,6 +86,7 @@ class CloudLight {
   /// without clouds.
   [[nodiscard]] const CloudGroundIrradiance& ground_irradiance() const;
   [[nodiscard]] const CloudField& field() const;
+  [[nodiscard]] const CloudOptics& optics() const;
   [[nodiscard]] const CloudSunMap& sun_map() const;
   [[nodiscard]] const CloudFactor& factor() const;
   /// Returns the solution for the sun.
