@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/clouds/cloud_cells.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -80,6 +81,10 @@ CloudCells::CloudCells(const CloudField& field, double cell_m)
         std::max(axis < 2 ? 1.0 : double{kLeastLevels}, std::round(size_m[axis] / cell_m));
     count_[static_cast<std::size_t>(axis)] = static_cast<int>(cells);
     cell_m_[axis] = std::max(size_m[axis], 1e-3) / cells;
+  }
+  if (1.0 * count_[0] * count_[1] * count_[2] > 1e9) {
+    throw InputError(fmt::format("cells of {} m are too small for a field of {} x {} m", cell_m,
+                                 size_m.x, size_m.y));
   }
   const auto places = PlaceOf(0, 0, count_[2]);
   stored_.assign(places, -1);

@@ -24,7 +24,8 @@ class CloudCells {
  public:
   /// Samples the field with as many threads as are free; the result does not depend on their number.
   /// @param cell_m  side of a cell, in [10, 10000]; cells of shallow fields are flatter, so that
-  /// there are at least kLeastLevels of them. A period is a multiple of the cells.
+  /// there are at least kLeastLevels of them. A period is a multiple of the cells. Throws InputError
+  /// for sides out of range and for more than 10^9 cells.
   CloudCells(const CloudField& field, double cell_m);
 
   static constexpr int kLeastLevels = 6;

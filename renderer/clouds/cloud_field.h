@@ -155,6 +155,12 @@ class CloudField {
   [[nodiscard]] double SignedDepth_m(const glm::dvec3& point) const;
   /// Returns the extinction of the voxels [1/m].
   [[nodiscard]] double Extinction_per_m(const glm::dvec3& point) const;
+  /// Values at one point.
+  struct Sample {
+    double depth_m, extinction_per_m;
+  };
+  /// Returns SignedDepth_m() and Extinction_per_m() at a point.
+  [[nodiscard]] Sample SampleAt(const glm::dvec3& point) const;
   /// Returns the extinction with the detail below the size of a voxel [1/m].
   [[nodiscard]] double DetailedExtinction_per_m(const glm::dvec3& point) const;
   /// Returns the effective radius of droplets or crystals at a point [um]; > 0 everywhere.
@@ -216,6 +222,7 @@ class CloudField {
   template <typename Value>
   [[nodiscard]] static float Mixed(const std::vector<Value>& values, const Place& place);
   [[nodiscard]] double DepthAt(const Place& place) const;
+  [[nodiscard]] double ExtinctionAt(const Place& place, double depth_m, double z) const;
   [[nodiscard]] double MajorantOf(std::int32_t slot) const;
   [[nodiscard]] double DetailAt(const glm::dvec3& point) const;
   /// Returns the brick of a cell, or the empty bricks around it, relative to the cell's point.
@@ -294,15 +301,24 @@ inline double CloudField::SignedDepth_m(const glm::dvec3& point) const {
   return place ? DepthAt(*place) : kLeastCloudDepth_m;
 }
 
+inline double CloudField::ExtinctionAt(const Place& place, double depth_m, double z) const {
+  if (!bricks_->extinction_per_m.empty()) {
+    return static_cast<double>(Mixed(bricks_->extinction_per_m, place));
+  }
+  if (depth_m <= 0.0) return 0.0;
+  return matter_.edge.FractionAt(depth_m) * matter_.column.Extinction_per_m(z);
+}
+
 inline double CloudField::Extinction_per_m(const glm::dvec3& point) const {
   const std::optional<Place> place = Find(point);
-  if (!place) return 0.0;
-  if (!bricks_->extinction_per_m.empty()) {
-    return static_cast<double>(Mixed(bricks_->extinction_per_m, *place));
-  }
+  return place ? ExtinctionAt(*place, DepthAt(*place), point.z) : 0.0;
+}
+
+inline CloudField::Sample CloudField::SampleAt(const glm::dvec3& point) const {
+  const std::optional<Place> place = Find(point);
+  if (!place) return {kLeastCloudDepth_m, 0.0};
   const double depth_m = DepthAt(*place);
-  if (depth_m <= 0.0) return 0.0;
-  return matter_.edge.FractionAt(depth_m) * matter_.column.Extinction_per_m(point.z);
+  return {depth_m, ExtinctionAt(*place, depth_m, point.z)};
 }
 
 }  // namespace alpenglow::renderer

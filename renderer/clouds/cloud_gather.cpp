@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace alpenglow::renderer {
 namespace {
@@ -33,8 +34,9 @@ CloudHats CloudHatsAt(double depth_to_sun) {
 
 /// What is known along a ray.
 struct CloudGather::March {
-  March(const CloudGather& gather, const CloudRay& along)
+  March(const CloudGather& gather, const CloudRay& along, double until_m)
       : ray(along),
+        end_m(until_m),
         bend_per_m(0.5 / gather.options_.planet_radius_m),
         peak(gather.optics_->peak().AtAngle(glm::dot(along.direction, gather.map_->to_sun()))),
         factors(gather.optics_->SourceFactors(-along.direction)) {}
@@ -47,7 +49,16 @@ struct CloudGather::March {
     return glm::normalize(ray.direction + glm::dvec3(0.0, 0.0, 2.0 * bend_per_m * at_m));
   }
 
+  /// Returns the light of the whole ray. The rest of a ray that was not followed to its end is like
+  /// its beginning.
+  /// @param has_equilibrium  whether ground is the rest of sky.
+  [[nodiscard]] CloudRayParts Finished(bool has_equilibrium) const;
+
   CloudRay ray;
+  double end_m;
+  double at_m = 0.0;
+  double outside_m = 0.0;      // the last step, if it was outside of clouds
+  double brick_until_m = 0.0;  // end of the brick with cloud around the ray
   double bend_per_m;
   ForwardPeak::Angle peak;
   CloudHarmonics factors;
@@ -59,6 +70,25 @@ struct CloudGather::March {
   // Light of higher orders at the last place of moments.
   double moments_at_m = -1e9, sun = 0.0, sky = 0.0, ground = 0.0;
 };
+
+CloudRayParts CloudGather::March::Finished(bool has_equilibrium) const {
+  CloudRayParts whole = parts;
+  whole.transmittance = std::exp(-depth);
+  if (weight > 0.0) whole.mean_distance_m = weighted_m / weight;
+  if (parts.scaled_transmittance < kLeastTransmittance) {
+    const double factor = 1.0 / (1.0 - parts.scaled_transmittance);
+    whole.first *= factor;
+    for (double& each : whole.higher) each *= factor;
+    whole.sky *= factor;
+    whole.ground *= factor;
+    whole.transmittance = whole.scaled_transmittance = 0.0;
+  }
+  if (has_equilibrium) {
+    whole.sky = std::min(whole.sky, 1.0 - whole.scaled_transmittance);
+    whole.ground = 1.0 - whole.scaled_transmittance - whole.sky;
+  }
+  return whole;
+}
 
 CloudGather::CloudGather(const CloudField& field, const CloudOptics& optics, const CloudSunMap& map,
                          const CloudMoments& sun, const CloudMoments& sky,
@@ -73,18 +103,18 @@ CloudGather::CloudGather(const CloudField& field, const CloudOptics& optics, con
 
 /// A step inside of cloud.
 struct CloudGather::Inside {
-  double middle_m, length_m;
-  glm::dvec3 point;
+  double begin_m, length_m;
+  glm::dvec3 middle;
 
   void Add(const CloudGather& gather, March& march) const;
 };
 
 void CloudGather::Inside::Add(const CloudGather& gather, March& march) const {
-  const double depth = gather.Extinction_per_m(point) * length_m;
+  const double depth = gather.Extinction_per_m(middle) * length_m;
   if (depth <= 0.0) return;
   const CloudOptics& optics = *gather.optics_;
   const double scale = optics.extinction_scale();
-  const double begin_m = middle_m - 0.5 * length_m;
+  const double middle_m = begin_m + 0.5 * length_m;
   if (begin_m >= march.to_sun_until_m) {
     const double stretch_m = std::max(length_m, kSunEvery_m);
     march.to_sun_until_m = begin_m + stretch_m;
@@ -93,7 +123,7 @@ void CloudGather::Inside::Add(const CloudGather& gather, March& march) const {
   }
   const double to_sun = march.to_sun;
   if (middle_m - march.moments_at_m > kMomentsEvery_m) {
-    const CloudCells::Mixture around = gather.sun_->cells().Around(point);
+    const CloudCells::Mixture around = gather.sun_->cells().Around(middle);
     march.moments_at_m = middle_m;
     march.sun = std::max(0.0, static_cast<double>(gather.sun_->Source(around, march.factors)));
     march.sky = std::max(0.0, static_cast<double>(gather.sky_->Source(around, march.factors)));
@@ -119,73 +149,62 @@ void CloudGather::Inside::Add(const CloudGather& gather, March& march) const {
   march.parts.scaled_transmittance *= left;
 }
 
-double CloudGather::StepInside_m(const glm::dvec3& point, double depth_m) const {
-  const double per_m = optics_->extinction_scale() * field_->Extinction_per_m(point);
+double CloudGather::StepInside_m(const CloudField::Sample& sample) const {
+  const double per_m = optics_->extinction_scale() * sample.extinction_per_m;
   const double by_depth_m =
       std::min(options_.step_depth / std::max(per_m, 1e-9), options_.most_step_m);
   // The first metres under the surface are resolved.
-  return std::max(std::min(by_depth_m, 3.0 + 0.4 * depth_m), options_.least_step_m);
+  return std::max(std::min(by_depth_m, 3.0 + 0.4 * sample.depth_m), options_.least_step_m);
+}
+
+bool CloudGather::PassClearBricks(March& march) const {
+  while (march.at_m >= march.brick_until_m) {
+    const glm::dvec3 point = march.At(march.at_m), direction = march.DirectionAt(march.at_m);
+    if (point.z > field_->top_altitude_m() && direction.z >= 0.0) return false;
+    const CloudSpan span = field_->SpanAhead(point, direction);
+    if (span.majorant_per_m > 0.0) {
+      march.brick_until_m = march.at_m + span.length_m;
+      return true;
+    }
+    const double most_m =
+        march.bend_per_m == 0.0 ? std::numeric_limits<double>::infinity() : kStraight_m;
+    march.at_m += std::min(span.length_m, most_m);
+    march.outside_m = 0.0;
+    if (!(march.at_m < march.end_m)) return false;
+  }
+  return true;
+}
+
+CloudField::Sample CloudGather::SampleAtSurface(March& march) const {
+  double before_m = march.at_m - march.outside_m;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle_m = 0.5 * (before_m + march.at_m);
+    const bool is_inside = field_->Extinction_per_m(march.At(middle_m)) > 0.0;
+    (is_inside ? march.at_m : before_m) = middle_m;
+  }
+  return field_->SampleAt(march.At(march.at_m));
 }
 
 CloudRayParts CloudGather::Along(const CloudRay& ray, double length_m) const {
-  March march(*this, ray);
-  const double end_m = std::min(length_m, kFarthestCloud_m);
-  const double top_m = field_->top_altitude_m();
-  double at_m = 0.0, outside_m = 0.0;  // the last step outside
-  double brick_until_m = 0.0;          // end of the brick with cloud around the ray
-  for (int step = 0; step < kMostSteps && at_m < end_m; ++step) {
-    glm::dvec3 point = march.At(at_m);
-    if (at_m >= brick_until_m) {
-      const glm::dvec3 direction = march.DirectionAt(at_m);
-      if (point.z > top_m && direction.z >= 0.0) break;
-      const CloudSpan span = field_->SpanAhead(point, direction);
-      if (span.majorant_per_m == 0.0) {
-        if (march.bend_per_m == 0.0 && !(span.length_m < end_m - at_m)) break;
-        at_m += march.bend_per_m == 0.0 ? span.length_m : std::min(span.length_m, kStraight_m);
-        outside_m = 0.0;
-        continue;
-      }
-      brick_until_m = at_m + span.length_m;
-    }
-    double depth_m = field_->SignedDepth_m(point);
-    if (depth_m <= 0.0) {
-      outside_m = std::min(std::max(options_.least_step_m, -kStepOutside * depth_m),
-                           std::max(options_.least_step_m, brick_until_m - at_m));
-      at_m += outside_m;
+  March march(*this, ray, std::min(length_m, kFarthestCloud_m));
+  for (int step = 0; step < kMostSteps && march.at_m < march.end_m; ++step) {
+    if (!PassClearBricks(march)) break;
+    CloudField::Sample sample = field_->SampleAt(march.At(march.at_m));
+    if (sample.extinction_per_m <= 0.0) {
+      const double in_brick_m = std::max(options_.least_step_m, march.brick_until_m - march.at_m);
+      march.outside_m =
+          std::clamp(-kStepOutside * sample.depth_m, options_.least_step_m, in_brick_m);
+      march.at_m += march.outside_m;
       continue;
     }
-    if (outside_m > 1.5 * options_.least_step_m) {
-      double before_m = at_m - outside_m;
-      for (int i = 0; i < kHalvings; ++i) {
-        const double middle_m = 0.5 * (before_m + at_m);
-        (field_->SignedDepth_m(march.At(middle_m)) > 0.0 ? at_m : before_m) = middle_m;
-      }
-      point = march.At(at_m);
-      depth_m = field_->SignedDepth_m(point);
-    }
-    outside_m = 0.0;
-    const double step_m = std::min(StepInside_m(point, depth_m), end_m - at_m);
-    const double middle_m = at_m + 0.5 * step_m;
-    Inside{middle_m, step_m, march.At(middle_m)}.Add(*this, march);
-    at_m += step_m;
+    if (march.outside_m > 1.5 * options_.least_step_m) sample = SampleAtSurface(march);
+    march.outside_m = 0.0;
+    const double step_m = std::min(StepInside_m(sample), march.end_m - march.at_m);
+    Inside{march.at_m, step_m, march.At(march.at_m + 0.5 * step_m)}.Add(*this, march);
+    march.at_m += step_m;
     if (march.parts.scaled_transmittance < kLeastTransmittance) break;
   }
-  CloudRayParts& parts = march.parts;
-  parts.transmittance = std::exp(-march.depth);
-  if (march.weight > 0.0) parts.mean_distance_m = march.weighted_m / march.weight;
-  if (parts.scaled_transmittance < kLeastTransmittance) {
-    const double whole = 1.0 / (1.0 - parts.scaled_transmittance);
-    parts.first *= whole;
-    for (double& each : parts.higher) each *= whole;
-    parts.sky *= whole;
-    parts.ground *= whole;
-    parts.transmittance = parts.scaled_transmittance = 0.0;
-  }
-  if (ground_ == nullptr) {
-    parts.sky = std::min(parts.sky, 1.0 - parts.scaled_transmittance);
-    parts.ground = 1.0 - parts.scaled_transmittance - parts.sky;
-  }
-  return parts;
+  return march.Finished(ground_ == nullptr);
 }
 
 }  // namespace alpenglow::renderer

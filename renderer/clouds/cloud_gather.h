@@ -76,7 +76,11 @@ class CloudGather {
     return options_.uses_detail ? field_->DetailedExtinction_per_m(point)
                                 : field_->Extinction_per_m(point);
   }
-  [[nodiscard]] double StepInside_m(const glm::dvec3& point, double depth_m) const;
+  /// Moves on to the next brick with cloud. Returns false if there is none before the end.
+  [[nodiscard]] bool PassClearBricks(March& march) const;
+  /// Moves back to the surface after a step into a cloud, and returns what is there.
+  [[nodiscard]] CloudField::Sample SampleAtSurface(March& march) const;
+  [[nodiscard]] double StepInside_m(const CloudField::Sample& sample) const;
 
   const CloudField* field_;
   const CloudOptics* optics_;

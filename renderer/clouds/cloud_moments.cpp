@@ -399,6 +399,7 @@ CloudMomentSolver::CloudMomentSolver(const CloudField& field,
                                      std::shared_ptr<const CloudOptics> optics,
                                      const CloudMomentOptions& options)
     : optics_(std::move(optics)), options_(options) {
+  RequireInRange(options.cell_m, 10.0, 2500.0, "the side of cells of light in clouds [m]");
   RequireInRange(options.tolerance, 1e-6, 0.5, "the tolerance of light in clouds");
   if (options.most_sweeps < 1) throw InputError("light in clouds needs one sweep or more");
   for (const double times : {4.0, 2.0, 1.0}) {

@@ -32,7 +32,7 @@
 namespace alpenglow::renderer {
 
 struct CloudMomentOptions {
-  double cell_m = 80.0;     // in [10, 10000]
+  double cell_m = 80.0;     // in [10, 2500]
   double tolerance = 5e-3;  // of the residual relative to the source, in [1e-6, 0.5]
   int most_sweeps = 60;     // over all tracks on one grid, >= 1
 };
