@@ -120,11 +120,60 @@ class FibreSource {
   glm::dvec2 wind_;
 };
 
-/// The part of a fibre between two nodes.
-struct FibrePart {
-  glm::dvec3 begin, along;
-  double begin_radius, radius_change;
-  double per_square_length;
+/// Parts of fibres between two nodes, four at a time, so that compilers use vectors. Places are
+/// relative to the cell that holds the parts.
+class FibreParts {
+ public:
+  void Add(const glm::dvec3& begin, const FibreNode& from, const FibreNode& to) {
+    if (count_ % kLanes == 0) packs_.emplace_back();
+    Pack& pack = packs_.back();
+    const std::size_t lane = count_++ % kLanes;
+    const glm::dvec3 along = to.place_m - from.place_m;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      pack.begin[a][lane] = static_cast<float>(begin[axis]);
+      pack.along[a][lane] = static_cast<float>(along[axis]);
+      pack.per_length[a][lane] = static_cast<float>(along[axis] / glm::dot(along, along));
+    }
+    pack.radius[lane] = static_cast<float>(from.radius_m);
+    pack.radius_change[lane] = static_cast<float>(to.radius_m - from.radius_m);
+  }
+  [[nodiscard]] bool empty() const { return packs_.empty(); }
+
+  /// Returns the greatest radius minus distance of the parts, and at least `least`.
+  [[nodiscard]] float DepthAt(const glm::vec3& point, float least) const {
+    Lanes depth = Lanes{} + least;
+    for (const Pack& pack : packs_) {
+      const Lanes x = point.x - pack.begin[0], y = point.y - pack.begin[1];
+      const Lanes z = point.z - pack.begin[2];
+      const Lanes share = x * pack.per_length[0] + y * pack.per_length[1] + z * pack.per_length[2];
+      const Lanes above = share > 0.0F ? share : Lanes{};
+      const Lanes t = above < 1.0F ? above : Lanes{} + 1.0F;
+      const Lanes dx = x - t * pack.along[0], dy = y - t * pack.along[1];
+      const Lanes dz = z - t * pack.along[2];
+      const Lanes square = dx * dx + dy * dy + dz * dz;
+      // Roots are only taken where they can give a greater depth.
+      const Lanes radius = pack.radius + t * pack.radius_change, reach = radius - depth;
+      const auto is_near = (reach > 0.0F) & (square < reach * reach);
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        if (is_near[i] != 0) depth[i] = radius[i] - std::sqrt(square[i]);
+      }
+    }
+    float most = depth[0];
+    for (std::size_t i = 1; i < kLanes; ++i) most = std::max(most, depth[i]);
+    return most;
+  }
+
+ private:
+  static constexpr std::size_t kLanes = 4;
+  using Lanes = float __attribute__((vector_size(16)));
+  struct Pack {
+    std::array<Lanes, 3> begin{}, along{}, per_length{};
+    Lanes radius{-1e6F, -1e6F, -1e6F, -1e6F}, radius_change{};
+  };
+
+  std::size_t count_ = 0;
+  std::vector<Pack> packs_;
 };
 
 /// Fibres by the cells of a lattice that they pass.
@@ -160,20 +209,9 @@ class FibreIndex {
   [[nodiscard]] double DepthAt(const glm::dvec3& point) const {
     const std::array<int, 3> cell = CellOf(point);
     if (cell[2] < 0 || cell[2] >= count_[2]) return kLeastCloudDepth_m;
-    const glm::dvec3 in_period = point - PeriodsAway(cell);
-    double depth = -kCloudMargin_m - kSlack_m;
-    for (const FibrePart& part : cells_[Index(cell)]) {
-      const glm::dvec3 from = in_period - part.begin;
-      const double share =
-          std::clamp(glm::dot(from, part.along) * part.per_square_length, 0.0, 1.0);
-      const glm::dvec3 away = from - share * part.along;
-      const double square = glm::dot(away, away);
-      const double radius = part.begin_radius + share * part.radius_change;
-      // Roots are only taken of distances that can give a greater depth.
-      const double reach = radius - depth;
-      if (reach > 0.0 && square < reach * reach) depth = radius - std::sqrt(square);
-    }
-    return depth;
+    constexpr auto kLeast = static_cast<float>(-kCloudMargin_m - kSlack_m);
+    return static_cast<double>(
+        cells_[Index(cell)].DepthAt(glm::vec3(point - CornerOf(cell)), kLeast));
   }
 
  private:
@@ -191,29 +229,20 @@ class FibreIndex {
            wrapped(0);
   }
 
-  /// Returns the offset of a cell from the cell of the first period that stands for it.
-  [[nodiscard]] glm::dvec3 PeriodsAway(const std::array<int, 3>& cell) const {
-    const auto periods = [&](std::size_t axis) {
-      const int count = count_[axis];
-      return cell[axis] < 0 ? -((count - 1 - cell[axis]) / count) : cell[axis] / count;
-    };
-    return cell_m_ * glm::dvec3(periods(0) * count_[0], periods(1) * count_[1], 0.0);
+  [[nodiscard]] glm::dvec3 CornerOf(const std::array<int, 3>& cell) const {
+    return cell_m_ * glm::dvec3(cell[0], cell[1], cell[2]) + glm::dvec3(0.0, 0.0, bottom_m_);
   }
 
   void Add(const FibreNode& from, const FibreNode& to) {
     const double radius = std::max(from.radius_m, to.radius_m);
     if (radius < 1.0) return;
-    const glm::dvec3 along = to.place_m - from.place_m;
-    const FibrePart part{from.place_m, along, from.radius_m, to.radius_m - from.radius_m,
-                         1.0 / glm::dot(along, along)};
     const glm::dvec3 reach(radius + kCloudMargin_m + kSlack_m);
     const std::array<int, 3> low = CellOf(glm::min(from.place_m, to.place_m) - reach);
     const std::array<int, 3> high = CellOf(glm::max(from.place_m, to.place_m) + reach);
     for (int z = std::max(low[2], 0); z <= std::min(high[2], count_[2] - 1); ++z) {
       for (int y = low[1]; y <= high[1]; ++y) {
         for (int x = low[0]; x <= high[0]; ++x) {
-          cells_[Index({x, y, z})].push_back(part);
-          cells_[Index({x, y, z})].back().begin -= PeriodsAway({x, y, z});
+          cells_[Index({x, y, z})].Add(from.place_m - CornerOf({x, y, z}), from, to);
         }
       }
     }
@@ -226,7 +255,7 @@ class FibreIndex {
   glm::dvec3 cell_m_;
   double bottom_m_;
   std::array<int, 3> count_{};
-  std::vector<std::vector<FibrePart>> cells_;
+  std::vector<FibreParts> cells_;
 };
 
 class StreakShape final : public CloudShape {
