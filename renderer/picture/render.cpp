@@ -280,6 +280,8 @@ EffectSet Present(const FrameContext& frame) {
   present = without(present, is_terrain_lit, {Effect::kHorizons, Effect::kBounce});
   present = without(present, scene.media().HasBodies(), {Effect::kVolumes});
   present = without(present, scene.media().HasLayers(), {Effect::kLayerGlow});
+  present = without(present, !scene.scene().clouds.empty(),
+                    {Effect::kClouds, Effect::kCloudShadows, Effect::kCloudGlow});
   present = without(present, frame.lights().size() > 1, {Effect::kMoonlight});
   present = without(present, frame.sky_lights().night != nullptr, {Effect::kNightSky});
   present = without(present, frame.sky_lights().stars != nullptr, {Effect::kStars});

@@ -187,6 +187,23 @@ TEST_F(SceneNeeds, OnlyFourBandsByDay) {
       << "the picture of four bands is that of a scene of four bands";
 }
 
+TEST_F(SceneNeeds, CloudsOnlyWhereTheSceneHasThem) {
+  constexpr EffectSet kOfClouds{Effect::kClouds, Effect::kCloudShadows, Effect::kCloudGlow};
+  Scene scene = BareScene(2.0, 180.0, 10.0, 60.0);
+  const auto count_present = [&] {
+    const ChosenPicture chosen = SceneRenderer(scene).RenderWithin(
+        ParseInstant("2026-06-21T11:30:00Z"), kTiny, {.max_error = 0.01});
+    return std::ranges::count_if(chosen.choice.estimates, [&](const EffectEstimate& estimate) {
+      return estimate.present && kOfClouds.Has(estimate.effect);
+    });
+  };
+  EXPECT_EQ(count_present(), 0);
+  scene.clouds.resize(1);
+  scene.clouds[0].options = DefaultCloudOptions(CloudGenus::kCirrus);
+  scene.clouds[0].options.period_m = kPeriodStep_m;
+  EXPECT_EQ(count_present(), 3);
+}
+
 TEST_F(SceneNeeds, NoSkyBetweenTheWallsOfAValley) {
   EXPECT_TRUE(LeftOut("valley").Has(Effect::kSky));
 }
