@@ -39,13 +39,22 @@ LayerValues FactorOf(const BandColour& colour, const PixelSum& rays) {
   }
   const LayerValues white = Rgb(colour, sun);
   LayerValues seen = Rgb(colour, sun * factor);
-  for (std::size_t c = 0; c < seen.size(); ++c)
-    seen[c] = std::clamp(seen[c] / white[c], 0.0F, 1.0F);
+  for (std::size_t c = 0; c < 3; ++c) seen[c] = std::clamp(seen[c] / white[c], 0.0F, 1.0F);
   return seen;
 }
 
 LayerValues SunVisibility(const BandColour&, const PixelSum& rays) {
   return {rays.parts->sun_visibility / static_cast<float>(rays.rays)};
+}
+
+// Returns light, transmittance and distance of clouds. The mean distance of several rays has their
+// weights.
+LayerValues Clouds(const BandColour& colour, const PixelSum& rays) {
+  const LayerValues light = LightOf<&Shaded::clouds>(colour, rays);
+  const auto count = static_cast<float>(rays.rays);
+  const float taken = count - rays.parts->cloud_transmittance;
+  const float distance_m = taken > 0.0F ? rays.parts->cloud_distance_m / taken : INFINITY;
+  return {light[0], light[1], light[2], rays.parts->cloud_transmittance / count, distance_m};
 }
 
 LayerValues Scotopic(const BandColour& colour, const PixelSum& rays) {
@@ -99,6 +108,11 @@ const std::vector<LayerKind>& LayerKinds() {
       {kSunVisibility, "sun_visibility", {"sun_visibility.Y"}, nullptr, SunVisibility},
       InColour(kLamps, "lamps", LightOf<&Shaded::lamps>),
       InColour(kVolumes, "volumes", LightOf<&Shaded::volumes>),
+      {kClouds,
+       "clouds",
+       {"clouds.R", "clouds.G", "clouds.B", "clouds.T", "clouds.Z"},
+       nullptr,
+       Clouds},
       {kScotopic, "scotopic", {kScotopicChannel}, nullptr, Scotopic},
       {kRays, "rays", {"rays.Y"}, nullptr, RayCountLayer},
       InStokes(kStokesQ, StokesLayer::kQ, StokesOf<&PolarisedLight::q>),
@@ -154,10 +168,12 @@ void PixelSum::Add(const Shaded& ray, bool with_parts) {
     return;
   }
   for (const auto part : {&Shaded::inscatter, &Shaded::transmittance, &Shaded::albedo,
-                          &Shaded::lamps, &Shaded::volumes})
+                          &Shaded::lamps, &Shaded::volumes, &Shaded::clouds})
     (*parts).*part = (*parts).*part + ray.*part;
   if (ray.polarised) parts->polarised = *parts->polarised + *ray.polarised;
   parts->sun_visibility += ray.sun_visibility;
+  parts->cloud_transmittance += ray.cloud_transmittance;
+  parts->cloud_distance_m += ray.cloud_distance_m;
 }
 
 const std::vector<std::string>& LayerNames() {

@@ -36,6 +36,8 @@ enum class PictureLayer {
   kSunVisibility,  // 0 to 1
   kLamps,          // all light that comes from lamps [cd/m^2]
   kVolumes,        // light scattered by media, and their emission [cd/m^2]
+  kClouds,         // see Shaded: light of clouds [cd/m^2], their transmittance, their distance [m],
+                   // which is infinite without clouds
   kScotopic,       // luminance for the rods of the eye [scotopic cd/m^2]
   kRays,           // number of rays of the pixel
   // Stokes layers of the mean radiance of the pixel's rays (image.h); with a polariser, of the
@@ -64,6 +66,11 @@ struct Shaded {
   /// Q and U of `radiance` in the axes of the picture; empty unless requested.
   std::optional<PolarisedLight> polarised = std::nullopt;
   float sun_visibility = 0.0F;
+  Spectrum clouds;  // part of `radiance` that clouds scatter to the eye
+  float cloud_transmittance = 1.0F;
+  /// Distances along the ray, weighted by the light that clouds take away there [m]: the mean
+  /// distance of the clouds, times 1 - cloud_transmittance.
+  float cloud_distance_m = 0.0F;
 };
 
 /// Sum over the rays of a pixel, which all have the same weight.
@@ -85,7 +92,7 @@ struct PixelSum {
 };
 
 /// Values of a layer's channels in one pixel; unused entries are 0.
-using LayerValues = std::array<float, 3>;
+using LayerValues = std::array<float, 5>;
 
 /// Describes how a layer gets its values: from the surface in the middle of a pixel (the mean depth
 /// of two surfaces is the depth of neither), or from the mean of the pixel's rays. One of the two

@@ -23,6 +23,7 @@ Shaded Polarised(const CameraRays& camera, const glm::dvec3& direction,
   shaded.inscatter = Passed(analyser, shaded.inscatter, &inscatter);
   shaded.lamps = Passed(analyser, shaded.lamps, nullptr);
   shaded.volumes = Passed(analyser, shaded.volumes, nullptr);
+  shaded.clouds = Passed(analyser, shaded.clouds, nullptr);
   shaded.polarised = {analyser.q * shaded.radiance, analyser.u * shaded.radiance};
   return shaded;
 }
@@ -114,7 +115,7 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
     for (std::size_t band = 0; band < scattered.size(); ++band)
       shaded.inscatter[band] += (1.0F - shaded.transmittance[band]) * scattered[band];
   }
-  shaded.albedo = Spectrum(frame.scene().medium().wavelengths_nm.size());
+  shaded.albedo = shaded.clouds = Spectrum(frame.scene().medium().wavelengths_nm.size());
   const auto left = [&](double distance_m) {
     return through.clouds.TransmittanceTo(distance_m) *
            LeftByBodies(through.pieces, distance_m, through.media.size());

@@ -515,7 +515,7 @@ TEST(Polariser, RemovesReflectionsOfTheSeaAtBrewstersAngle) {
 }
 
 TEST(PictureLayers, EveryLayerHasANameChannelsAndOneFunction) {
-  ASSERT_EQ(LayerNames().size(), 13U);
+  ASSERT_EQ(LayerNames().size(), 14U);
   for (const std::string& name : LayerNames()) {
     const PictureLayer layer = LayerFromName(name);
     const LayerKind& kind = KindOf(layer);
@@ -533,7 +533,8 @@ TEST(PictureLayers, FactorsOfRedLightAreNotNegative) {
   const Medium earth = MediumPreset("earth");
   const BandColour colour(earth.wavelengths_nm);
   Shaded ray;
-  ray.radiance = ray.transmittance = ray.albedo = Spectrum(colour.wavelengths_nm().size());
+  ray.radiance = ray.transmittance = ray.albedo = ray.clouds =
+      Spectrum(colour.wavelengths_nm().size());
   ray.transmittance[ray.transmittance.size() - 1] = 0.9F;  // as if through a red filter
   ray.albedo[1] = 0.9F;                                    // or a green one
   PixelSum pixel;
@@ -547,6 +548,30 @@ TEST(PictureLayers, FactorsOfRedLightAreNotNegative) {
   }
   EXPECT_GT(KindOf(PictureLayer::kTransmittance).of_rays(colour, pixel)[0], 0.3F)
       << "red stays what it is";
+}
+
+TEST(PictureLayers, CloudsHaveTheMeanOfTheirDistances) {
+  const BandColour colour(MediumPreset("earth").wavelengths_nm);
+  Shaded clear;
+  clear.radiance = clear.clouds = Spectrum(colour.wavelengths_nm().size());
+  Shaded thin = clear, thick = clear;
+  thin.cloud_transmittance = 0.75F;
+  thin.cloud_distance_m = 0.25F * 8000.0F;
+  thick.cloud_transmittance = 0.0F;
+  thick.cloud_distance_m = 3000.0F;
+  std::ranges::fill(thick.clouds.values(), 1.0F);
+  PixelSum pixel;
+  pixel.Add(clear, true);
+  const LayerValues without = KindOf(PictureLayer::kClouds).of_rays(colour, pixel);
+  EXPECT_EQ(without[3], 1.0F);
+  EXPECT_TRUE(std::isinf(without[4])) << "without clouds there is no distance";
+  for (const Shaded& ray : {thin, thick, thick}) pixel.Add(ray, true);
+  const LayerValues mean = KindOf(PictureLayer::kClouds).of_rays(colour, pixel);
+  EXPECT_FLOAT_EQ(mean[3], 0.4375F);
+  // Clouds take 0.25, 1 and 1 of the light, at 8, 3 and 3 km.
+  EXPECT_FLOAT_EQ(mean[4], (0.25F * 8000.0F + 2.0F * 3000.0F) / 2.25F);
+  EXPECT_FLOAT_EQ(mean[1], 0.5F * static_cast<float>(colour.LinearSrgb(InDouble(thick.clouds))[1]))
+      << "two of four rays have light";
 }
 
 /// Returns the sky from 100 km up, 8.5 degrees below the horizontal and 84 degrees beside the sun,
