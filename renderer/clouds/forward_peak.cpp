@@ -18,9 +18,31 @@ namespace {
 // Angles are uniform in their root, which makes them dense in the peak; depths in their logarithm.
 constexpr std::size_t kAngles = 512, kDepths = ForwardPeak::kDepths;
 constexpr double kShallowest = 1e-3;
-// Degree of the series. Lobes with g = 0.95 have chi_600 = 4e-14; droplets have wider tails of the
-// series, and their peak within a third of a degree is rounded off.
-constexpr int kSeriesDegree = 600;
+// Degree of the series, and the degree of its window exp(-(l / w)^2). The diffraction by crystals is
+// so narrow that its series does not end here, and would ring over all angles without a window. The
+// window rounds off angles below 0.2 degrees.
+constexpr int kSeriesDegree = 1500;
+constexpr double kWindowDegree = 400.0;
+// Within the first angle the phase function has the window too, so that the peak and its removal are
+// equally round; from the second one on it is exact, with halos.
+constexpr double kRoundWithin_deg = 1.0, kExactFrom_deg = 2.0;
+
+double WindowAt(std::size_t degree) {
+  return std::exp(-std::pow(static_cast<double>(degree) / kWindowDegree, 2));
+}
+
+/// Returns the phase function, round near the forward direction.
+/// @param chi  its Legendre coefficients. @param series  (2 l + 1) / (4 pi) P_l.
+double RoundPhase(const PhaseFunction& phase, double angle, const std::vector<double>& chi,
+                  const std::vector<double>& series) {
+  const double exact = Phase(phase, std::cos(angle));
+  const double share =
+      (angle / kRadiansPerDegree - kRoundWithin_deg) / (kExactFrom_deg - kRoundWithin_deg);
+  if (share >= 1.0) return exact;
+  double round = 0.0;
+  for (std::size_t l = 0; l < chi.size(); ++l) round += WindowAt(l) * chi[l] * series[l];
+  return std::lerp(round, exact, std::max(share, 0.0));
+}
 
 double PeakDepthAt(std::size_t i) {
   return kShallowest *
@@ -65,8 +87,8 @@ PeakFactors PeakFactorsOf(const std::vector<double>& chi, int degree, double fra
       const double a = static_cast<int>(l) <= degree ? 1.0 : chi[l] / fraction;
       // (e^(-x (1 - a)) - e^(-x)) / x = e^(-x (1 - a)) (1 - e^(-x a)) / x, without cancellation.
       const double orders = -std::exp(-x * (1.0 - a)) * std::expm1(-x * a) / x;
-      factors.effective.push_back(fraction * (orders - a));
-      factors.broadened.push_back(chi[l] * std::expm1(-x * (1.0 - a)));
+      factors.effective.push_back(WindowAt(l) * fraction * (orders - a));
+      factors.broadened.push_back(WindowAt(l) * chi[l] * std::expm1(-x * (1.0 - a)));
     }
   }
   return factors;
@@ -88,9 +110,8 @@ ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
   }
   const PeakFactors factors = PeakFactorsOf(chi, degree, fraction_);
   tbb::parallel_for(std::size_t{0}, kAngles, [&](std::size_t angle) {
-    const double cosine = std::cos(PeakAngleAt(angle));
-    const std::vector<double> series = LegendreSeries(kSeriesDegree, cosine);
-    const double value = Phase(phase, cosine);
+    const std::vector<double> series = LegendreSeries(kSeriesDegree, std::cos(PeakAngleAt(angle)));
+    const double value = RoundPhase(phase, PeakAngleAt(angle), chi, series);
     for (std::size_t depth = 0; depth < kDepths; ++depth) {
       double effective = value, broadened = value;
       for (std::size_t l = 0; l < chi.size(); ++l) {

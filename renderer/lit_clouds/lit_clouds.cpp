@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <utility>
 
 #include "atmosphere/math/constants.h"
@@ -35,8 +34,17 @@ float CloudsOnRay::TransmittanceTo(double distance_m) const {
   return left;
 }
 
+float CloudsOnRay::WeightedDistance_m() const {
+  float sum_m = 0.0F, left = 1.0F;
+  for (const CloudScreen& screen : screens) {
+    sum_m += left * (1.0F - screen.transmittance) * static_cast<float>(screen.distance_m);
+    left *= screen.transmittance;
+  }
+  return sum_m;
+}
+
 float CloudsOnRay::DiskLeft() const {
-  const float scattered_too = TransmittanceTo(std::numeric_limits<double>::infinity());
+  const float scattered_too = transmittance();
   return scattered_too > 0.0F ? std::min(unscattered / scattered_too, 1.0F) : 0.0F;
 }
 

@@ -15,6 +15,7 @@
 
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -43,6 +44,12 @@ struct CloudsOnRay {
   std::vector<CloudScreen> screens;  // in order
   float unscattered = 1.0F;          // transmittance of all for light that is not scattered at all
 
+  /// Returns the transmittance of all screens, with the light in the forward peak.
+  [[nodiscard]] float transmittance() const {
+    return TransmittanceTo(std::numeric_limits<double>::infinity());
+  }
+  /// Returns the distances of the screens, weighted by the light that they take away [m].
+  [[nodiscard]] float WeightedDistance_m() const;
   /// Returns the transmittance of the screens up to a distance, with the light in the forward peak.
   [[nodiscard]] float TransmittanceTo(double distance_m) const;
   /// Returns `unscattered` relative to the transmittance with the forward peak: for the disks of sun

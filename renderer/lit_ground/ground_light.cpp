@@ -107,9 +107,10 @@ Spectrum GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
                                                              sun.altitude_m, sun.mu_s_for_air})
                              : air_.multiple_scattering().Irradiance(
                                    sun.altitude_m, sun.mu_s_for_air, normal_mu, azimuth);
-  if (from.media == nullptr && from.clouds == nullptr) return clear;
+  const bool has_clouds = from.clouds != nullptr && light.effects.Has(Effect::kCloudGlow);
+  if (from.media == nullptr && !has_clouds) return clear;
   SkyThroughMedia sky = SkyThroughMedia::Clear(air_.bands());
-  if (from.clouds != nullptr) sky = from.clouds->SkyOnSurface(sun.altitude_m, normal_mu, sky);
+  if (has_clouds) sky = from.clouds->SkyOnSurface(sun.altitude_m, normal_mu, sky);
   if (from.media != nullptr) sky = from.media->SkyOnSurface(sun.altitude_m, normal_mu, sky);
   return sky.left * clear + sky.added;
 }
@@ -151,8 +152,8 @@ std::optional<Spectrum> GroundLight::SunIrradiance(const Hit& hit, const GroundS
                                                    const glm::dvec3& to_disk) const {
   const double cosine = LitCosine(hit, from.light, sun, to_disk);
   if (cosine <= 0.0) return std::nullopt;
-  const double past_clouds =
-      from.clouds != nullptr ? from.clouds->shadow().Transmittance(hit.point) : 1.0;
+  const bool is_shaded = from.clouds != nullptr && from.light.effects.Has(Effect::kCloudShadows);
+  const double past_clouds = is_shaded ? from.clouds->shadow().Transmittance(hit.point) : 1.0;
   const Spectrum clear = static_cast<float>(sun.visible_fraction * cosine * past_clouds) *
                          air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   if (from.media == nullptr) return clear;

@@ -61,6 +61,7 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
       lamps_(std::make_shared<LampLight>(scene.lamps().SeenBy(camera()))),
       plan_(std::make_shared<LampPlan>()) {
   const Observer observer = ObserverOf(scene, camera_sample);
+  instant_ = observer.bodies.instant;
   Lighting sun = LightingAt(scene, observer);
   sun.effects = settings.effects;
   Spectrum by_sun(sun.source.irradiance.size());
@@ -81,7 +82,7 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
   }
   LightNight();
   LightMedia();
-  LightClouds(observer.bodies.instant);
+  LightClouds();
   LightTerrain();
   if (Has(Effect::kStars)) AddStars(observer);
   AddSmallDisks();
@@ -146,13 +147,14 @@ void FrameContext::LightMedia() {
   }
 }
 
-void FrameContext::LightClouds(const UtcTime& instant) {
-  if (!scene_->clouds().HasAny()) return;
+void FrameContext::LightClouds() {
+  for (FrameLight& source : lights_) source.clouds = nullptr;
+  if (!scene_->clouds().HasAny() || !Has(Effect::kClouds)) return;
   Prepare(settings_.progress, "light of clouds");
   for (FrameLight& source : lights_) {
     const DistantLight& light = source.light.source;
     source.clouds =
-        std::make_shared<const LitClouds>(scene_->clouds().At(instant, light.direction.seen),
+        std::make_shared<const LitClouds>(scene_->clouds().At(instant_, light.direction.seen),
                                           scene_->geometry(), over_ground_->air, light);
   }
 }
@@ -195,9 +197,10 @@ void FrameContext::AddStars(const Observer& observer) {
 }
 
 FrameContext FrameContext::Reduced(EffectSet effects) const {
-  constexpr EffectSet kThatLightTerrain{Effect::kHorizons,  Effect::kBounce,    Effect::kSkylight,
-                                        Effect::kShadows,   Effect::kLayerGlow, Effect::kVolumes,
-                                        Effect::kMolecules, Effect::kAerosol,   Effect::kOzone};
+  constexpr EffectSet kThatLightTerrain{
+      Effect::kHorizons,  Effect::kBounce,    Effect::kSkylight, Effect::kShadows,
+      Effect::kLayerGlow, Effect::kVolumes,   Effect::kClouds,   Effect::kCloudShadows,
+      Effect::kCloudGlow, Effect::kMolecules, Effect::kAerosol,  Effect::kOzone};
   constexpr EffectSet kThatLightMedia{Effect::kLayerGlow, Effect::kVolumes, Effect::kLights,
                                       Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
   const auto are_alike = [&](EffectSet those) {
@@ -217,6 +220,7 @@ FrameContext FrameContext::Reduced(EffectSet effects) const {
   }
   if (!effects.Has(Effect::kLights)) frame.plan_ = std::make_shared<LampPlan>();
   if (!are_alike(kThatLightMedia)) frame.LightMedia();
+  frame.LightClouds();
   if (!are_alike(kThatLightTerrain)) frame.LightTerrain();
   frame.AddSmallDisks();
   return frame;

@@ -35,7 +35,7 @@ struct FrameLight {
 
   /// Returns the shadow of clouds; null: none.
   [[nodiscard]] const CloudShadow* cloud_shadow() const {
-    return clouds ? &clouds->shadow() : nullptr;
+    return clouds && light.effects.Has(Effect::kCloudShadows) ? &clouds->shadow() : nullptr;
   }
   [[nodiscard]] GroundSources ground_sources() const { return {light, media.get(), clouds.get()}; }
 };
@@ -97,8 +97,7 @@ class FrameContext {
  private:
   void LightNight();
   void LightMedia();
-  /// Finds the clouds of the instant and their light.
-  void LightClouds(const UtcTime& instant);
+  void LightClouds();
   /// Computes the terrain's illumination by all lights.
   void LightTerrain();
   void AddStars(const Observer& observer);
@@ -106,6 +105,7 @@ class FrameContext {
 
   const PreparedScene* scene_;
   RenderSettings settings_;
+  UtcTime instant_;
   const AirOverGround* over_ground_;
   MovingCamera moving_;
   PixelFilter filter_;

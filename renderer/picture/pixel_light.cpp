@@ -230,7 +230,7 @@ void PixelLight::Add(const Ray& seen) {
   const Shaded shaded = shader_->Shade(seen.hit, airs_[seen.air], seen.ray, near,
                                        samples_.Point(sum_.rays, SampleOf::kSunDisk));
   spread_.Add(frame_->scene().colour().LinearSrgb(shaded.radiance));
-  const Spectrum glow = shaded.lamps + shaded.volumes;
+  const Spectrum glow = shaded.lamps + shaded.volumes + shaded.clouds;
   const bool sees_sky = seen.hit.kind == HitKind::kSky && !airs_[seen.air].is_alone;
   if (sees_sky && !sky_) sky_ = shaded.inscatter;
   Spectrum shared = shaded.radiance + -1.0F * glow;

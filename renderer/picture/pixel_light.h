@@ -90,14 +90,14 @@ class PixelLight {
   [[nodiscard]] double last_m() const { return last_m_; }
   [[nodiscard]] const RaySpread& spread() const { return spread_; }
 
-  /// Returns the rays added since the last call, without light from lamps and volumes: the airlight
+  /// Returns the rays added since the last call, without light from lamps, volumes and clouds: the airlight
   /// of lamps has one value for all rays of a pixel, and near lamps it changes strongly from pixel
   /// to pixel.
   [[nodiscard]] std::vector<SeenRay> NewRays() { return std::exchange(new_rays_, {}); }
   /// Airlight of the rays that see the sky; the radiance in NewRays() of these rays is relative to
   /// it.
   [[nodiscard]] const std::optional<Spectrum>& sky() const { return sky_; }
-  /// Replaces the mean radiance without lamps and volumes by a better estimate than the mean of the
+  /// Replaces the mean radiance without lamps, volumes and clouds by a better estimate than the mean of the
   /// pixel's own rays.
   void SetMeanRadiance(const Spectrum& mean) {
     sum_.radiance = static_cast<float>(sum_.rays) * mean + glow_;
@@ -126,7 +126,7 @@ class PixelLight {
   RaySpread spread_;
   std::vector<SeenRay> new_rays_;
   std::optional<Spectrum> sky_;
-  Spectrum glow_;  // sum of the light from lamps and volumes that new_rays_ exclude
+  Spectrum glow_;  // sum of the light from lamps, volumes and clouds that new_rays_ exclude
 };
 
 }  // namespace alpenglow::renderer

@@ -115,15 +115,18 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
     for (std::size_t band = 0; band < scattered.size(); ++band)
       shaded.inscatter[band] += (1.0F - shaded.transmittance[band]) * scattered[band];
   }
-  shaded.albedo = shaded.clouds = Spectrum(frame.scene().medium().wavelengths_nm.size());
+  shaded.albedo = Spectrum(frame.scene().medium().wavelengths_nm.size());
   const auto left = [&](double distance_m) {
     return through.clouds.TransmittanceTo(distance_m) *
            LeftByBodies(through.pieces, distance_m, through.media.size());
   };
   shaded.lamps =
       through.lamp_light + frame.lamps().Seen(near.seen, ray, frame_->camera().PixelAngle(), left);
-  shaded.volumes = through.media + through.layers_left * through.cloud_light;
-  shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes;
+  shaded.volumes = through.media;
+  shaded.clouds = through.layers_left * through.cloud_light;
+  shaded.cloud_transmittance = through.clouds.transmittance();
+  shaded.cloud_distance_m = through.clouds.WeightedDistance_m();
+  shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes + shaded.clouds;
   if (hit.kind == HitKind::kSky) {
     const Spectrum disk_left = through.clouds.DiskLeft() * through.layers_left;
     if (!frame.sky_lights().small_sun)

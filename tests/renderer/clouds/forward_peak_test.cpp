@@ -10,6 +10,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "renderer/clouds/ice_phase.h"
 #include "renderer/layer.h"
 #include "tests/fixtures/media.h"
 
@@ -86,6 +87,30 @@ TEST(ForwardPeak, ThinWaysSeeThePhaseFunctionItself) {
     EXPECT_NEAR(peak.Broadened(nu, 0.0), Phase(phase, nu), 5e-3 * Phase(phase, nu));
     EXPECT_NEAR(peak.Effective(nu, 0.0) * (1.0 - peak.fraction()), Phase(phase, nu),
                 5e-3 * Phase(phase, nu));
+  }
+}
+
+// The diffraction of crystals is so narrow that a series of any degree rings without a window: at 5
+// degrees by fifty times the phase function.
+TEST(ForwardPeak, PeakOfIceHasNoRings) {
+  const CloudPhases phases = IcePhases(550.0);
+  const PhaseFunction& phase = phases.Drawn(40.0, 0.5);
+  const ForwardPeak peak(phase, kDegree);
+  for (const double x : {0.01, 1.0, 5.0}) {
+    double last = peak.Effective(1.0, x);
+    for (double angle_deg = 0.25; angle_deg < 15.0; angle_deg += 0.25) {
+      const double here = peak.Effective(std::cos(angle_deg * kRadiansPerDegree), x);
+      EXPECT_GT(here, 0.0) << x << " " << angle_deg;
+      EXPECT_LT(here, last) << x << " " << angle_deg;
+      last = here;
+    }
+  }
+  // A ring of 1 % of the phase function would show; the window and the table stay below it.
+  for (const double angle_deg : {20.0, 22.0, 24.0, 46.0, 90.0, 150.0}) {
+    const double nu = std::cos(angle_deg * kRadiansPerDegree);
+    EXPECT_NEAR(peak.Effective(nu, 1e-3) * (1.0 - peak.fraction()), Phase(phase, nu),
+                0.01 * Phase(phase, nu))
+        << angle_deg;
   }
 }
 
