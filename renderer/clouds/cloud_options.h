@@ -68,6 +68,11 @@ struct CloudOptions {
   bool operator==(const CloudOptions&) const = default;
 };
 
+/// Returns whether bases of a genus follow the ground: the air that forms its clouds rises from there.
+[[nodiscard]] constexpr bool FollowsGround(CloudGenus genus) {
+  return genus == CloudGenus::kCumulus || genus == CloudGenus::kStratocumulus;
+}
+
 /// Returns whether a genus consists of ice; the others consist of droplets.
 [[nodiscard]] constexpr bool IsOfIce(CloudGenus genus) { return genus == CloudGenus::kCirrus; }
 

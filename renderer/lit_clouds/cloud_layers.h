@@ -30,7 +30,10 @@ struct SolvedClouds {
 /// effects renders a picture many times. Safe to use from many threads.
 class CloudsByTime {
  public:
-  explicit CloudsByTime(const Scene& scene) : scene_(scene) {}
+  /// @param ground_m  height of the ground at the scene's place above the ellipsoid.
+  CloudsByTime(const Scene& scene, double ground_m) : scene_(scene) {
+    scene_.clouds = OverEllipsoid(scene_.clouds, ground_m);
+  }
 
   /// Returns whether the scene has clouds.
   [[nodiscard]] bool HasAny() const;

@@ -77,7 +77,9 @@ PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<const SceneGrou
       horizons_(other ? other->horizons_ : std::make_shared<HorizonsOnDemand>(*ground_, medium_)),
       sunlight_(other ? other->sunlight_ : std::make_shared<RecentSunlight>(*ground_)),
       moonlight_(other ? other->moonlight_ : std::make_shared<RecentSunlight>(*ground_)),
-      clouds_(other ? other->clouds_ : std::make_shared<CloudsByTime>(scene_)),
+      clouds_(other ? other->clouds_
+                    : std::make_shared<CloudsByTime>(scene_,
+                                                     GroundHeightUnder(*ground_, scene_.place))),
       material_(scene_.ground, ColourDrape::Of(scene_, *ground_), medium_.wavelengths_nm),
       terrain_message_(MessageOf(*ground_, material_)),
       air_(medium_, {*ground_, geometry_, lamps_, *horizons_, material_}),

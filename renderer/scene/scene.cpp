@@ -485,6 +485,7 @@ SceneCloud CloudOf(const TomlTable& entry, const fs::path& folder, std::size_t n
   if (!grid) {
     RefuseKeys(table, {"repeats", "latitude", "longitude"}, "is for a grid");
     CheckGenusKeys(table, cloud.options);
+    cloud.is_over_ground = FollowsGround(cloud.options.genus) && !table.Has("base_height_m");
     return cloud;
   }
   RefuseKeys(table,

@@ -164,10 +164,13 @@ struct Volume {
 
 /// A layer of clouds over the whole scene, or a field of others; see CloudFieldsOf.
 struct SceneCloud {
-  std::string name;             // in messages: "scene.toml: cloud[0]"
-  CloudOptions options;         // of a grid: the genus and the wind alone
-  std::filesystem::path grid;   // see ReadCloudGrid; empty: a layer of the genus
-  bool repeats = false;         // a grid repeats beyond its sides
+  std::string name;            // in messages: "scene.toml: cloud[0]"
+  CloudOptions options;        // of a grid: the genus and the wind alone
+  std::filesystem::path grid;  // see ReadCloudGrid; empty: a layer of the genus
+  bool repeats = false;        // a grid repeats beyond its sides
+  /// The base is a height above the ground at the scene's place, not above the ellipsoid; see
+  /// OverEllipsoid. It is the default of genera with low bases.
+  bool is_over_ground = false;
   std::optional<Place> middle;  // of a grid; empty: the place of the scene
 };
 

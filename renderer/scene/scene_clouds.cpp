@@ -173,6 +173,7 @@ std::vector<SceneCloud> CloudsFromText(std::string_view text) {
     SceneCloud cloud;
     cloud.options = LayerFromText(text.substr(at, comma - at));
     cloud.options.seed = static_cast<std::uint32_t>(clouds.size()) + 1U;
+    cloud.is_over_ground = FollowsGround(cloud.options.genus);
     cloud.name = fmt::format("--clouds[{}]", clouds.size());
     clouds.push_back(std::move(cloud));
     at = comma + 1;
@@ -197,9 +198,18 @@ double MemoryOfMachine() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
+std::vector<SceneCloud> OverEllipsoid(std::vector<SceneCloud> clouds, double ground_m) {
+  for (SceneCloud& cloud : clouds) {
+    if (cloud.is_over_ground) cloud.options.base_altitude_m += std::max(ground_m, 0.0);
+    cloud.is_over_ground = false;
+  }
+  return clouds;
+}
+
 void RequireCloudsOverGround(const std::vector<SceneCloud>& clouds, double lowest_m) {
   for (const SceneCloud& cloud : clouds) {
-    if (!cloud.grid.empty() || cloud.options.base_altitude_m >= lowest_m) continue;
+    if (!cloud.grid.empty() || cloud.is_over_ground || cloud.options.base_altitude_m >= lowest_m)
+      continue;
     throw InputError(fmt::format(
         "{}.base_height_m is {}; the lowest ground of the scene is at {:.1f} m (base_height_m of "
         "[[cloud]] sets another base)",

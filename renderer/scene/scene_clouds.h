@@ -56,7 +56,12 @@ void RequireCloudsFit(const std::vector<SceneCloud>& clouds, double memory);
 /// Returns the memory of this machine [bytes].
 [[nodiscard]] double MemoryOfMachine();
 
-/// Throws InputError for a layer whose base is below all ground of the scene.
+/// Returns the layers with their bases above the ellipsoid.
+/// @param ground_m  height of the ground at the scene's place above the ellipsoid.
+[[nodiscard]] std::vector<SceneCloud> OverEllipsoid(std::vector<SceneCloud> clouds,
+                                                    double ground_m);
+
+/// Throws InputError for a layer whose base above the ellipsoid is below all ground of the scene.
 /// @param lowest_m  height of the lowest ground above the ellipsoid.
 void RequireCloudsOverGround(const std::vector<SceneCloud>& clouds, double lowest_m);
 

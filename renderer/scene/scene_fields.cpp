@@ -309,7 +309,9 @@ const TomlFields<SceneCloud>& CloudFields() {
        {"cover", Number(kOptions, &CloudOptions::cover, Ranges::kCover), "", "",
         "fraction of the sky, seen vertically; of cumulus at most 0.8", "0.3"},
        {"base_height_m", Number(kOptions, &CloudOptions::base_altitude_m, Ranges::kBase_m), "m", "",
-        "above the ellipsoid; except for cirrus at most 11000", "1200.0"},
+        "above the ellipsoid; except for cirrus at most 11000. The default of cumulus and "
+        "stratocumulus is above the ground at the place of the scene",
+        "# 1200.0"},
        {"depth_m", Number(kOptions, &CloudOptions::depth_m, Ranges::kDepth_m), "m", "",
         "from the base to the highest tops", "1500.0"},
        {"droplets_per_cm3",

@@ -242,6 +242,7 @@ Metadata RecordOf(const TomlFields<SceneCloud>& fields, const SceneCloud& cloud,
   std::string text;
   for (const auto& [key, value] : ValuesOf(fields, cloud))
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, value);
+  if (cloud.is_over_ground) text += ", base over the ground";
   if (!cloud.grid.empty()) text += ", " + hashes.names_and_hashes.at(cloud.grid);
   if (cloud.middle)
     text += fmt::format(" at {}, {}", cloud.middle->latitude_deg, cloud.middle->longitude_deg);

@@ -182,8 +182,21 @@ TEST(CloudsOfText, LayersThatNeedMoreThanTheMemoryAreRefused) {
     EXPECT_LT(most(CloudsFromText(genus).at(0)), 0.34e9) << genus << ": as in the manual";
 }
 
+TEST(CloudsOfText, LowBasesFollowTheGroundAndHighOnesDoNot) {
+  const auto base_m = [](const char* text, double ground_m) {
+    return OverEllipsoid(CloudsFromText(text), ground_m).at(0).options.base_altitude_m;
+  };
+  EXPECT_EQ(base_m("cumulus", 800.0), 2000.0);
+  EXPECT_EQ(base_m("stratocumulus", 800.0), 1700.0);
+  EXPECT_EQ(base_m("altocumulus", 800.0), 4000.0);
+  EXPECT_EQ(base_m("cirrus", 800.0), 8000.0);
+  EXPECT_EQ(base_m("cumulus", -400.0), 1200.0) << "below the sea, from the ellipsoid on";
+}
+
 TEST(CloudsOfText, BasesBelowAllGroundAreRefused) {
-  const std::vector<SceneCloud> clouds = CloudsFromText("high, fair");
+  std::vector<SceneCloud> clouds = CloudsFromText("high, fair");
+  EXPECT_NO_THROW(RequireCloudsOverGround(clouds, 1500.0)) << "1200 m above the ground";
+  clouds[1].is_over_ground = false;
   EXPECT_NO_THROW(RequireCloudsOverGround(clouds, 1200.0));
   EXPECT_THAT(tests::FaultOf([&] {
                 RequireCloudsOverGround(clouds, 1200.5);

@@ -263,6 +263,9 @@ longitude = 138.5
   cirrus.crystal_radius_um = 40.0;
   cirrus.seed = 2;
   EXPECT_EQ(scene.clouds[1].options, cirrus) << "other keys are those of the genus";
+  EXPECT_FALSE(scene.clouds[0].is_over_ground);
+  EXPECT_FALSE(scene.clouds[1].is_over_ground);
+  EXPECT_TRUE(Read(kPlace + "[[cloud]]\ngenus = \"cumulus\"\n").clouds[0].is_over_ground);
   EXPECT_EQ(scene.clouds[1].name, "s.toml: cloud[1]");
   const SceneCloud& grid = scene.clouds[2];
   EXPECT_EQ(grid.grid, "folder/field.txt");

@@ -684,6 +684,7 @@ const std::vector<ChangedKey>& ChangedClouds() {
       {"[[cloud]]\n", "genus = 'cumulus'", "genus = 'stratocumulus'"},
       {kCumulus, "", "cover = 0.31"},
       {kCumulus, "", "base_height_m = 1300"},
+      {kCumulus, "", "base_height_m = 1200"},  // the default is above the ground
       {kCumulus, "", "depth_m = 1600"},
       {kCumulus, "", "droplets_per_cm3 = 251"},
       {kCumulus, "", "seed = 2"},
