@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Measures the fast method of light in clouds (renderer/clouds/cloud_light.h) relative to traced
 // paths, for six views of one field:
-//   cloud_light_study [GENUS [SEED [SUN_DEG [PERIOD_KM [PATHS [CELLS_M...]]]]]]
+//   cloud_light_study [GENUS [SEED [SUN_DEG [PERIOD_KM [PATHS [DROPLETS [CELLS_M...]]]]]]]
+// with DROPLETS 0 for the phase function of Henyey and Greenstein (g = 0.85) or 1 for droplets.
 // Errors are root mean squares relative to the traced value of a pixel, at least a twentieth of the
 // view's mean, over pixels that clouds dim by a tenth or more; the scatter of the paths is
 // subtracted. The whole is light as at a sun of 40 degrees over grass: sun + 0.036 sky + 0.012
@@ -22,6 +23,7 @@
 #include "atmosphere/math/constants.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/clouds/cloud_light.h"
+#include "renderer/clouds/cloud_light_fluxes.h"
 #include "renderer/clouds/droplet_phase.h"
 
 namespace alpenglow::renderer {
@@ -29,7 +31,7 @@ namespace {
 
 constexpr int kWide = 16, kHigh = 9;
 // Rays are followed again to measure their time.
-constexpr int kRepeats = 300;
+constexpr int kRepeats = 50;
 constexpr double kSkyShare = 0.036, kGroundShare = 0.012;
 
 glm::dvec3 TowardsAzimuth(double azimuth_deg, double elevation_deg) {
@@ -189,12 +191,13 @@ void RunStudy(const StudyCase& study) {
   const std::vector<StudyView> views = ViewsOf(field, 20.0);
   const Stopwatch tracing;
   const std::vector<StudyPixel> pixels = TracedPixels(field, tracer, views, study.paths);
+  const std::size_t paths = std::max<std::size_t>(pixels.front().traced.paths, 1);
   fmt::print(
       "{}, seed {}, sun at {} degrees, period {} km, {}: {} pixels, {} paths each, {:.1f} us "
       "a path\n",
       study.genus, study.seed, study.sun_deg, study.period_km,
-      study.has_droplets ? "droplets" : "Henyey-Greenstein 0.85", pixels.size(), study.paths,
-      1e6 * tracing.processor_s() / static_cast<double>(pixels.size() * study.paths));
+      study.has_droplets ? "droplets" : "Henyey-Greenstein 0.85", pixels.size(), paths,
+      1e6 * tracing.processor_s() / static_cast<double>(pixels.size() * paths));
   const CloudFluxes fluxes = tracer.Fluxes(CloudSource::kSun, {.paths = {.paths = 200000}});
   fmt::print("fluxes by paths: up {:.4f} +- {:.4f}, down {:.4f} +- {:.4f}, direct {:.4f}\n",
              fluxes.mean.up_at_top.value, fluxes.mean.up_at_top.standard_error,
@@ -223,7 +226,9 @@ void RunStudy(const StudyCase& study) {
                    light.sun_moments().up_at_top / mu_s, light.sun_moments().down_at_base / mu_s,
                    light.ground_irradiance().direct / mu_s);
       } else {
-        fmt::print("  factors:");
+        const CloudLightFluxes gathered = GatheredFluxes(light, {.rays_per_column = 40000}).front();
+        fmt::print("  gathered fluxes: up {:.4f}, down {:.4f}, direct {:.4f}; factors:",
+                   gathered.up_at_top, gathered.down_at_base, gathered.direct_at_base);
         for (const double each : light.factor().node) fmt::print(" {:.3f}", each);
         fmt::print("\n");
       }
