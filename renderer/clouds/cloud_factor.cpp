@@ -22,9 +22,11 @@ constexpr double kInfinite_m = std::numeric_limits<double>::infinity();
 constexpr double kLeastCosine = 0.03;
 constexpr double kLeastDepth = 0.1;  // of rays that count
 constexpr double kLeastOfMean = 0.1;
-// Weights of the deviation from the factor that fits all nodes alike, and of the difference between
-// neighbouring nodes, relative to the mean weight of a node: nodes with little light follow others.
-constexpr double kRidge = 0.01, kSmoothness = 0.1;
+// The variance of one path relative to the square of its ray's radiance, as measured for cumulus; and
+// how far factors are expected from the one that fits all nodes alike, and from their neighbours.
+// Nodes with little light follow others.
+constexpr double kPathVariance = 10.0;
+constexpr double kNodeScatter = 1.0, kNeighbourScatter = 0.3;
 
 /// A ray with its light by both methods.
 struct FactorRay {
@@ -108,13 +110,9 @@ CloudFactor FitCloudFactor(const CloudField& field, const CloudGather& gather,
     equations.Add(ray, 1.0 / (scale * scale));
   }
   const double common = equations.Common();
-  double trace = 0.0;
-  for (std::size_t i = 0; i < kCloudFactorNodes; ++i) {
-    trace += equations.matrix[i * (kCloudFactorNodes + 1)];
-  }
-  if (!(trace > 0.0)) return {};
-  const double ridge = kRidge * trace / kCloudFactorNodes;
-  const double smooth = kSmoothness * trace / kCloudFactorNodes;
+  const double variance = kPathVariance / options.paths_per_ray;
+  const double ridge = variance / (kNodeScatter * kNodeScatter);
+  const double smooth = variance / (kNeighbourScatter * kNeighbourScatter);
   for (std::size_t i = 0; i < kCloudFactorNodes; ++i) {
     equations.matrix[i * (kCloudFactorNodes + 1)] += ridge;
     equations.right_side[i] += ridge * common;

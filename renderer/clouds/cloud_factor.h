@@ -5,7 +5,9 @@
 // much of it deeper inside. Both depend mainly on the optical depth tau_s to the sun. A factor
 // k(tau_s), linear between six nodes in log(1 + tau_s), is fitted by least squares to paths of the
 // exact method along random rays that enter through the top and the base. The error of a ray counts
-// relative to its radiance, at least a tenth of the mean. The fit holds for one field and one sun.
+// relative to its radiance, at least a tenth of the mean. Factors of neighbouring nodes are expected
+// to differ by 0.3, so that noise of the paths does not make them alternate. The fit holds for one
+// field and one sun.
 #pragma once
 
 #include <array>
@@ -18,7 +20,7 @@
 namespace alpenglow::renderer {
 
 struct CloudFactorOptions {
-  std::size_t rays = 12000;  // in [0, 10^7]; 0: the factor is 1 everywhere
+  std::size_t rays = 20000;  // in [0, 10^7]; 0: the factor is 1 everywhere
   int paths_per_ray = 2;     // in [1, 1000]
   std::uint64_t seed = 1;
 };
