@@ -107,7 +107,8 @@ std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
   if (!medium) medium = MediumPreset("earth");
   const auto error = RelativeErrorFromText(options.max_error.value_or(""));
   if (options.method == "path-trace")
-    return MakePathTraceEvaluator(*medium, {.max_error = error.value_or(0.005)});
+    return MakePathTraceEvaluator(
+        *medium, {.max_paths = kMostPathsOfCase, .relative_error = error.value_or(0.005)});
   return MakeIntegralEvaluator(*medium,
                                {.samples = options.samples.value_or(16), .max_error = error});
 }

@@ -62,14 +62,11 @@ Estimates WithErrors(const std::vector<double>& values, const std::vector<double
 
 class PathEvaluator final : public Evaluator {
  public:
-  PathEvaluator(const Medium& medium, const PathTraceOptions& options)
-      : medium_(medium), black_ground_(medium) {
+  PathEvaluator(const Medium& medium, const reference::PathOptions& options)
+      : medium_(medium), black_ground_(medium), paths_(options) {
     Validate(medium);
-    RequireInRange(options.max_error, kSmallestMaxError, 1.0, "max_error");
+    RequireInRange(options.relative_error, kSmallestMaxError, 1.0, "max_error");
     std::fill(black_ground_.ground_albedo.begin(), black_ground_.ground_albedo.end(), 0.0);
-    paths_.seed = options.seed;
-    paths_.max_paths = options.max_paths;
-    paths_.relative_error = options.max_error;
     paths_.stopped = Interrupted;
   }
 
@@ -325,7 +322,7 @@ void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::pat
 }
 
 std::unique_ptr<Evaluator> MakePathTraceEvaluator(const Medium& medium,
-                                                  const PathTraceOptions& options) {
+                                                  const reference::PathOptions& options) {
   return std::make_unique<PathEvaluator>(medium, options);
 }
 

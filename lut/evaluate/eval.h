@@ -54,6 +54,7 @@
 #include "atmosphere/base/csv_reader.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
+#include "atmosphere/reference/path_tracer.h"
 #include "lut/cli/messages.h"
 #include "lut/layer.h"
 #include "lut/table_io/table_folder.h"
@@ -123,11 +124,8 @@ struct Estimate {
 /// One estimate per wavelength.
 using Estimates = std::vector<Estimate>;
 
-struct PathTraceOptions {
-  double max_error = 0.005;  // relative error: paths are added until one standard error is below it
-  std::size_t max_paths = std::size_t{1} << 22U;  // maximum per case; larger errors remain after it
-  std::uint64_t seed = 1;                         // a case's value does not depend on other cases
-};
+/// Default maximum of paths per case; larger errors remain after it.
+inline constexpr std::size_t kMostPathsOfCase = std::size_t{1} << 22U;
 
 /// The smallest error that may be requested: the accuracy of the reference solution.
 inline constexpr double kSmallestMaxError = 1e-8;
@@ -183,9 +181,11 @@ class Evaluator {
 [[nodiscard]] std::unique_ptr<Evaluator> MakeTableEvaluator(TableFolder tables);
 
 /// Makes an evaluator for single or multiple scattering and the sky's irradiance; it rejects the
-/// other quantities. Throws InputError for options out of range.
+/// other quantities. Throws InputError for a relative error out of range.
+/// @param options  of each case: its value does not depend on other cases. `stopped` is replaced: an
+///   interrupt stops the tracer.
 [[nodiscard]] std::unique_ptr<Evaluator> MakePathTraceEvaluator(
-    const Medium& medium, const PathTraceOptions& options = {});
+    const Medium& medium, const reference::PathOptions& options = {.max_paths = kMostPathsOfCase});
 
 /// Evaluates every case of a file in parallel and writes "id,wavelength_nm,value,error" in the
 /// order of the cases, atomically. It never holds more than a few thousand cases, and the ids of

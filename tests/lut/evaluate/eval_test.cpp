@@ -681,7 +681,8 @@ TEST_F(StoredEval, MomentsAndRaysAgreeWithPathsInTwilight) {
 TEST_F(Eval, StokesParametersAgreeWithPathsOnBothSidesOfTheSun) {
   const Medium medium = InPolarisedLight(MediumPreset("bruneton2017"), "bruneton2017");
   const auto integral = MakeIntegralEvaluator(medium);
-  const auto paths = MakePathTraceEvaluator(medium, {.max_error = 0.005, .max_paths = 1U << 13U});
+  const auto paths =
+      MakePathTraceEvaluator(medium, {.max_paths = 1U << 13U, .relative_error = 0.005});
   std::string text = kHeader;
   for (const char* quantity : {"stokes_q", "stokes_u", "total"}) {
     text += fmt::format("{0}left,{0},0,60,70,50,\n{0}right,{0},0,60,-70,50,\n", quantity);
@@ -785,7 +786,8 @@ TEST_F(Eval, GivenDistancesExcludeLightFromTheGround) {
   expect(*tables, 0.05, kQuantities);
   // The tolerance is four standard errors of two values.
   constexpr double kError = tests::ScaledDown(0.008, 0.02);
-  const auto paths = MakePathTraceEvaluator(medium, {.max_error = kError});
+  const auto paths =
+      MakePathTraceEvaluator(medium, {.max_paths = kMostPathsOfCase, .relative_error = kError});
   expect(*paths, 4.0 * kError * std::sqrt(2.0), kQuantities);
 }
 
@@ -935,7 +937,8 @@ TEST(IntegralEvaluator, OptionsOutOfRangeAreRefused) {
 TEST_F(Eval, PathsEvaluateOnlyScatteredLight) {
   const Medium medium = MediumPreset("bruneton2017");
   constexpr double kError = tests::ScaledDown(0.005, 0.02);
-  const auto paths = MakePathTraceEvaluator(medium, {.max_error = kError});
+  const auto paths =
+      MakePathTraceEvaluator(medium, {.max_paths = kMostPathsOfCase, .relative_error = kError});
   const auto integral = MakeIntegralEvaluator(medium, WithMaxError(1e-6));
   const std::string cases = std::string(kHeader) +
                             "sky,single,2,80,40,70,\nground,single,1000,130,40,70,\n"
