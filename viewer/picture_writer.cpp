@@ -116,13 +116,13 @@ void PictureWriter::Write(const std::filesystem::path& file, const ImageSize& si
   const PaintedView view = flight_.ViewOf(size);
   const Projection projection = ProjectionOf(view);
   const Development development = flight_.exposure().DevelopmentOf(image, projection);
-  const auto& [look, ev100] = development;
   const Metadata metadata = HeaderOf(view, development);
   if (format.StoresLight()) {
     format.write_light(file, image, metadata, projection);
   } else {
-    format.write_colours(file, Develop(Balanced(std::move(image), look.white), ev100, look),
-                         metadata);
+    const Look& look = development.look;
+    format.write_colours(
+        file, Develop(Balanced(std::move(image), look.white), development.ev100, look), metadata);
   }
 }
 

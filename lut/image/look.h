@@ -107,6 +107,14 @@ struct ExposureRule {
 ///   image.
 [[nodiscard]] double Ev100By(const ExposureRule& rule, double metered_ev100, const Look& look);
 
+/// Look and exposure with which a picture is developed.
+struct Development {
+  Look look;  // with a definite white balance
+  double ev100 = 0.0;
+  std::string rule = {};        // exposure rule in words, if the picture's header states it
+  std::string white_rule = {};  // rule of a white balance that is smooth over a series
+};
+
 /// Returns the rule in words, for the metadata of output files.
 [[nodiscard]] std::string RuleInWords(const ExposureRule& rule);
 

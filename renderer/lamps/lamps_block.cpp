@@ -48,7 +48,7 @@ class LampPacking {
     gpu.at_eye = {Densities(placed.air, z_eye), z_lamp - reference_m_};
     gpu.at_lamp = {Densities(placed.air, z_lamp), placed.lamp.radius_m};
     gpu.glow = {placed.mean_share, chosen.glow, with_core ? CoreOf(placed) : 0.0, 0.0};
-    gpu.shade = {chosen.shade, chosen.plan.first, chosen.plan.levels,
+    gpu.shade = {chosen.shade, chosen.first_plan, chosen.plan_levels,
                  AltitudeOverSphere(placed.lamp.position_m, planet_radius_m_)};
     return gpu;
   }

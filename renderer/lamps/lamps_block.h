@@ -56,18 +56,14 @@ struct LampView {
 [[nodiscard]] LampView LampViewFrom(const LocalFrame& ground, const Place& eye,
                                     double pixel_angle_rad);
 
-/// Layers of a lamp's plan in the texture of plans; levels 0: no plan.
-struct PlanLayers {
-  int first = 0, levels = 0;
-};
-
 /// A lamp of the block and the indices of its tables.
 struct ChosenLamp {
   const PlacedLamp* placed;  // lamp as placed for the eye of the view
   int table = 0;             // layer of its measured profile
   int glow = 0;              // layer of the light that its air brings to surfaces
   int shade = -1;            // layer of the terrain around it; -1: none
-  PlanLayers plan{};         // layers of the lit ground around it
+  int first_plan = 0;        // first layer of the lit ground around it in the texture of plans
+  int plan_levels = 0;       // number of these layers; 0: no plan
 };
 
 /// @param layers  layers of LampStage: molecules, aerosol and at most one layer of the scene.

@@ -155,7 +155,9 @@ ChosenLamp SceneLamps::Choose(std::uint32_t node) const {
   const int shade = node < shades_.size() ? static_cast<int>(node) : -1;
   ChosenLamp chosen{&tree_.Light(node), table, number_of_glow_.at(&tree_.GlowOf(node)), shade};
   for (std::size_t i = 0; i < plans().size(); ++i) {
-    if (planned_[i].node == node) chosen.plan = {planned_[i].first_layer, planned_[i].levels};
+    if (planned_[i].node != node) continue;
+    chosen.first_plan = planned_[i].first_layer;
+    chosen.plan_levels = planned_[i].levels;
   }
   return chosen;
 }

@@ -42,7 +42,7 @@ StarPixels::StarPixels(const CameraRays& camera, int width, int height,
   }
 }
 
-bool StarPixels::IsNear(const PicturePoint& place) const {
+bool StarPixels::IsNear(const glm::dvec2& place) const {
   return place.x > -kStarReach && place.x < width_ + kStarReach && place.y > -kStarReach &&
          place.y < height_ + kStarReach;
 }
@@ -50,7 +50,7 @@ bool StarPixels::IsNear(const PicturePoint& place) const {
 void StarPixels::AddPoint(const CameraRays& camera, const StarLight& light, const Left& left) {
   const auto at = camera.PlaceOf(light.direction);
   if (!at) return;
-  const PicturePoint place{(*at)[0], (*at)[1]};
+  const glm::dvec2 place{(*at)[0], (*at)[1]};
   if (!IsNear(place)) return;
   const std::optional<Spectrum> through = left(place.x, place.y);
   if (!through) return;
@@ -76,18 +76,18 @@ void StarPixels::AddTrail(const CameraRays& camera, const StarLight& light, cons
 
 // Transmittance changes little from end to end of a step. If ground hides one end, it is evaluated
 // at every point.
-void StarPixels::AddStep(const CameraRays& camera, const PicturePoint& from, const PicturePoint& to,
+void StarPixels::AddStep(const CameraRays& camera, const glm::dvec2& from, const glm::dvec2& to,
                          const Spectrum& irradiance, const Left& left, const Hidden& hidden) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   const int count = std::max(static_cast<int>(std::ceil(2.0 * length)), 1);
   const auto place = [&](int i) {
     const double share = (i + 0.5) / count;
-    return PicturePoint{std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share)};
+    return glm::dvec2{std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share)};
   };
   std::optional<Spectrum> first, last;
   bool is_asked = false;
   for (int i = 0; i < count; ++i) {
-    const PicturePoint at = place(i);
+    const glm::dvec2 at = place(i);
     if (!IsNear(at)) continue;
     if (!is_asked) {
       first = left(from.x, from.y);
@@ -105,9 +105,9 @@ void StarPixels::AddStep(const CameraRays& camera, const PicturePoint& from, con
   }
 }
 
-void StarPixels::Spread(const CameraRays& camera, const PicturePoint& place,
+void StarPixels::Spread(const CameraRays& camera, const glm::dvec2& place,
                         const Spectrum& irradiance) {
-  const auto [x, y] = place;
+  const double x = place.x, y = place.y;
   const StarBell across = StarBellAround(x), down = StarBellAround(y);
   for (int j = 0; j < 2 * kStarReach + 1; ++j) {
     for (int i = 0; i < 2 * kStarReach + 1; ++i) {

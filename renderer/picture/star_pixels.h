@@ -10,6 +10,7 @@
 
 #include <array>
 #include <functional>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
@@ -47,17 +48,15 @@ class StarPixels {
   [[nodiscard]] const std::vector<glm::dvec3>& directions() const { return directions_; }
 
  private:
-  struct PicturePoint {
-    double x, y;
-  };
-  /// Returns whether a place is near enough to light a pixel of the picture.
-  [[nodiscard]] bool IsNear(const PicturePoint& place) const;
+  /// Returns whether a place is near enough to light a pixel of the picture. Places are in pixels
+  /// from the upper left corner.
+  [[nodiscard]] bool IsNear(const glm::dvec2& place) const;
   void AddPoint(const CameraRays& camera, const StarLight& light, const Left& left);
   void AddTrail(const CameraRays& camera, const StarLight& light, const Left& left,
                 const Hidden& hidden);
-  void AddStep(const CameraRays& camera, const PicturePoint& from, const PicturePoint& to,
+  void AddStep(const CameraRays& camera, const glm::dvec2& from, const glm::dvec2& to,
                const Spectrum& irradiance, const Left& left, const Hidden& hidden);
-  void Spread(const CameraRays& camera, const PicturePoint& place, const Spectrum& irradiance);
+  void Spread(const CameraRays& camera, const glm::dvec2& place, const Spectrum& irradiance);
 
   int width_, height_;
   SpreadLight spread_;

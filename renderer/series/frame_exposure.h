@@ -52,14 +52,6 @@ class SmoothMeter {
   std::map<int, double> nodes_;
 };
 
-/// Settings for developing a frame.
-struct Development {
-  Look look;  // resolved for the frame
-  double ev100;
-  std::string rule;        // exposure rule as text
-  std::string white_rule;  // rule of a white balance that is smooth over the series
-};
-
 /// Key of the EV100 of a frame in its header.
 inline constexpr char kEv100Key[] = "alpenglow.ev100";
 

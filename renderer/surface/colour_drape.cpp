@@ -219,16 +219,16 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
   if (IsBesideTheLand())
     note_ = fmt::format("{}{}{}: lies beside the land of the scene, which keeps its own cover",
                         note_, note_.empty() ? "" : "; ", file.string());
-  const PicturePoint& a = places_.front();
-  const PicturePoint& b = places_.back();
+  const glm::dvec2& a = places_.front();
+  const glm::dvec2& b = places_.back();
   const double across = std::hypot(step_x_m_, step_y_m_) * (kGridNodes - 1);
   pixel_m_ = across / std::max(std::hypot(b.x - a.x, b.y - a.y), 1e-6);
 }
 
 bool ColourDrape::IsBesideTheLand() const {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  PicturePoint least{kFar, kFar}, most{-kFar, -kFar};
-  for (const PicturePoint& place : places_) {
+  glm::dvec2 least{kFar, kFar}, most{-kFar, -kFar};
+  for (const glm::dvec2& place : places_) {
     if (!std::isfinite(place.x) || !std::isfinite(place.y)) continue;
     least = {std::min(least.x, place.x), std::min(least.y, place.y)};
     most = {std::max(most.x, place.x), std::max(most.y, place.y)};
@@ -240,7 +240,7 @@ bool ColourDrape::IsBesideTheLand() const {
            least.y <= picture.rows && most.y >= 0.0);
 }
 
-std::array<double, 4> ColourDrape::Bilinear(std::size_t number, const PicturePoint& at) const {
+std::array<double, 4> ColourDrape::Bilinear(std::size_t number, const glm::dvec2& at) const {
   const Level& level = (*levels_)[number];
   const double scale = 1.0 / static_cast<double>(std::size_t{1} << number);
   const double x = std::clamp(at.x * scale - 0.5, 0.0, level.columns - 1.0);
@@ -272,14 +272,11 @@ std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, do
   const int column = std::min(static_cast<int>(gx), kGridNodes - 2);
   const int row = std::min(static_cast<int>(gy), kGridNodes - 2);
   const double fx = gx - column, fy = gy - row;
-  const PicturePoint* low = &places_[static_cast<std::size_t>(row * kGridNodes + column)];
-  const PicturePoint* high = low + kGridNodes;
-  const auto between = [&](double PicturePoint::*of) {
-    const double south = low[0].*of + fx * (low[1].*of - low[0].*of);
-    const double north = high[0].*of + fx * (high[1].*of - high[0].*of);
-    return south + fy * (north - south);
-  };
-  PicturePoint at{between(&PicturePoint::x), between(&PicturePoint::y)};
+  const glm::dvec2* low = &places_[static_cast<std::size_t>(row * kGridNodes + column)];
+  const glm::dvec2* high = low + kGridNodes;
+  const glm::dvec2 south = low[0] + fx * (low[1] - low[0]);
+  const glm::dvec2 north = high[0] + fx * (high[1] - high[0]);
+  glm::dvec2 at = south + fy * (north - south);
   const Level& finest_level = levels_->front();
   if (columns_of_turn_ > 0.0 && (at.x < 0.0 || at.x > finest_level.columns))
     at.x -= columns_of_turn_ * std::floor(at.x / columns_of_turn_);

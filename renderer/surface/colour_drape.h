@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -78,22 +79,19 @@ class ColourDrape {
     int columns = 0, rows = 0;
     std::vector<std::array<std::uint16_t, 4>> pixels;
   };
-  /// Position in the picture [pixels from its upper left corner].
-  struct PicturePoint {
-    double x, y;
-  };
 
   ColourDrape(const std::filesystem::path& file, bool is_land_cover, const SceneGround& ground);
   [[nodiscard]] bool IsBesideTheLand() const;
-  [[nodiscard]] std::array<double, 4> Bilinear(std::size_t level, const PicturePoint& at) const;
+  [[nodiscard]] std::array<double, 4> Bilinear(std::size_t level, const glm::dvec2& at) const;
 
   std::shared_ptr<const std::vector<Level>> levels_;  // each at half the resolution of the last
   LocalFrame frame_;                                  // frame of the ground under the picture
   glm::dmat3 turn_{1.0};                              // rotation into that frame
   glm::dvec3 origin_{0.0};
-  // Positions in the picture at the nodes of a grid over the frame's plane.
+  // Positions in the picture [pixels from its upper left corner] at the nodes of a grid over the
+  // frame's plane.
   double first_x_m_ = 0.0, first_y_m_ = 0.0, step_x_m_ = 1.0, step_y_m_ = 1.0;
-  std::vector<PicturePoint> places_;
+  std::vector<glm::dvec2> places_;
   double columns_of_turn_ = 0.0;  // of longitude; 0: columns do not close around the planet
   double radius_m_ = 0.0;
   double pixel_m_ = 1.0;

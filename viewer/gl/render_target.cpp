@@ -192,14 +192,14 @@ void PixelReader::Forget() {
   if (arrives_ != nullptr) glDeleteSync(std::exchange(arrives_, nullptr));
 }
 
-void PixelReader::Begin(const RenderTarget& picture, const Rectangle& part) {
+void PixelReader::Begin(const RenderTarget& picture, const PixelBox& part) {
   if (Busy()) return;
   pixels_ = static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer());
   glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer_.id());
   glBufferData(GL_PIXEL_PACK_BUFFER, BytesOf(pixels_), nullptr, GL_STREAM_READ);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(part.left, part.bottom, part.width, part.height, GL_RGB, GL_FLOAT, nullptr);
+  glReadPixels(part.x, part.y, part.width, part.height, GL_RGB, GL_FLOAT, nullptr);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   arrives_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   CheckGl("PixelReader::Begin");

@@ -87,18 +87,13 @@ inline void Fit(std::optional<RenderTarget>& target, int width, int height, Pixe
 /// Reads one rectangle at a time. An OpenGL context must be current in all calls.
 class PixelReader {
  public:
-  /// A rectangle of a picture [pixels]; row 0 is the bottom, as in OpenGL.
-  struct Rectangle {
-    int left, bottom, width, height;
-  };
-
   PixelReader() = default;
   ~PixelReader();
   PixelReader(const PixelReader&) = delete;
   PixelReader& operator=(const PixelReader&) = delete;
 
   /// Begins to read red, green and blue of the first output; has no effect while Busy().
-  void Begin(const RenderTarget& picture, const Rectangle& part);
+  void Begin(const RenderTarget& picture, const PixelBox& part);
   /// Cancels the pending read.
   void Forget();
   /// Returns whether a read is pending.

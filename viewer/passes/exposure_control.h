@@ -28,12 +28,6 @@ struct FlightExposure {
   std::optional<double> ev100;   // as displayed; nullopt before the first picture
 };
 
-/// Look and exposure with which a picture is developed.
-struct Development {
-  Look look;  // with a definite white balance
-  double ev100;
-};
-
 /// It needs no OpenGL. A copy continues from the same state.
 class ExposureControl {
  public:
