@@ -21,6 +21,7 @@ namespace {
 
 // Levels stand at most this number of cells apart along a beam.
 constexpr double kCellsAlongBeam = 4.0;
+constexpr double kLeastAcross = 0.25;  // cells are at most four times as long on the ground
 constexpr int kFineSteps = 12;
 constexpr double kFirstStep_m = 5.0, kStepGrowth = 1.15;
 
@@ -45,21 +46,27 @@ struct BeamLine {
   std::vector<std::uint16_t> value;
 };
 
-/// Returns the optical depth between neighbouring levels along a beam from the lowest one.
+/// Returns the optical depth between neighbouring levels along a beam from the highest one down. The
+/// beam ends where it reaches an optical depth: levels below have 0.
 std::vector<double> DepthsBetweenLevels(const CloudTracker& tracker, const CloudRay& beam,
-                                        double level_m, std::size_t levels, double step_m) {
+                                        double level_m, std::size_t levels, double step_m,
+                                        double most_depth) {
   std::vector<double> depth(levels, 0.0);
   const double end_m = level_m * static_cast<double>(levels);
+  double sum = 0.0;
   tracker.EachSpan(beam, end_m, [&](double begin_m, double until_m, double) {
-    for (double at_m = begin_m; at_m < until_m;) {
-      const auto level = std::min(static_cast<std::size_t>(at_m / level_m), levels - 1);
-      const double border_m = level_m * static_cast<double>(level + 1);
+    for (double at_m = begin_m; at_m < until_m && sum < most_depth;) {
+      const auto passed = std::min(static_cast<std::size_t>(at_m / level_m), levels - 1);
+      const double border_m = level_m * static_cast<double>(passed + 1);
       double next_m = std::min({at_m + step_m, until_m, std::max(border_m, at_m + 1e-6)});
       if (!(next_m > at_m)) next_m = until_m;
-      depth[level] += (next_m - at_m) * tracker.Extinction_per_m(beam.At(0.5 * (at_m + next_m)));
+      const double part =
+          (next_m - at_m) * tracker.Extinction_per_m(beam.At(0.5 * (at_m + next_m)));
+      depth[levels - 1 - passed] += part;
+      sum += part;
       at_m = next_m;
     }
-    return true;
+    return sum < most_depth;
   });
   return depth;
 }
@@ -82,7 +89,10 @@ CloudSunMap::CloudSunMap(const CloudField& field, const glm::dvec3& to_sun,
     size_m += glm::abs(depth_m * slope_);
   }
   for (int axis = 0; axis < 2; ++axis) {
-    const double cells = std::max(1.0, std::round(size_m[axis] / options.cell_m));
+    // Beams whose feet are apart along an axis are nearer to each other by this factor.
+    const double across = std::sqrt(std::max(0.0, 1.0 - to_sun[axis] * to_sun[axis]));
+    const double cell_m = options.cell_m / std::max(across, kLeastAcross);
+    const double cells = std::max(1.0, std::round(size_m[axis] / cell_m));
     cell_m_[axis] = size_m[axis] / cells;
     nodes_[static_cast<std::size_t>(axis)] = static_cast<int>(cells) + (is_periodic_ ? 0 : 1);
   }
@@ -97,9 +107,9 @@ CloudSunMap::CloudSunMap(const CloudField& field, const glm::dvec3& to_sun,
     BeamLine& made = lines[static_cast<std::size_t>(line)];
     made.has_cloud.assign(static_cast<std::size_t>(nodes_[0]) * words_, 0);
     for (int column = 0; column < nodes_[0]; ++column) {
-      const std::vector<double> depth =
-          DepthsBetweenLevels(tracker, {PointAt(column, line, 0.0), to_sun_}, level_m_ / to_sun.z,
-                              static_cast<std::size_t>(levels_), options.step_m);
+      const std::vector<double> depth = DepthsBetweenLevels(
+          tracker, {PointAt(column, line, levels_), -to_sun_}, level_m_ / to_sun.z,
+          static_cast<std::size_t>(levels_), options.step_m, kDeepest);
       const std::size_t before = made.value.size();
       double sum = 0.0;
       for (std::size_t level = depth.size(); level-- > 0;) {

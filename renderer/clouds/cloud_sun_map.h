@@ -8,7 +8,8 @@
 // periodic, and the beam through a node is integrated without interpolation. Only levels between
 // which a beam meets cloud are stored: one bit says so for each, and 16 bits hold the optical depth
 // below it as (q / 65535)^2 64. The error of rounding is below 2.5e-4 up to an optical depth of 4;
-// depths above 64 are stored as 64.
+// depths above 64 are stored as 64, and beams end where they reach it: under a low sun few pass the
+// whole layer.
 //
 // Between beams the transmittance is linear, so that the mean of a shadow is that of the beams, but
 // clouds are blurred over cells of 20 m. OpticalDepthToSun() therefore takes twelve steps through the
@@ -32,7 +33,9 @@ namespace alpenglow::renderer {
 inline constexpr double kLowestCloudSun_deg = 3.0;
 
 struct CloudSunMapOptions {
-  double cell_m = 20.0;  // in [1, 1000], about; a period is a multiple of the cells
+  /// Distance between neighbouring beams, in [1, 1000]. On the ground they are further apart along x
+  /// by 1 / sqrt(1 - s_x^2), at most 4, and likewise along y; a period is a multiple of the cells.
+  double cell_m = 20.0;
   /// Largest step along a beam.
   double step_m = 20.0;  // in [1, 100]
 };

@@ -156,12 +156,28 @@ TEST(CloudSunMap, OpenFieldsHaveClearAirAround) {
 
 TEST(CloudSunMap, StoresOnlyPartsOfBeamsWithCloud) {
   const CloudField field = tests::SphereClouds(0.05);
-  const CloudSunMap map(field, SunAt(35.0));
+  const CloudSunMap map(field, {0.0, 0.0, 1.0});
   std::size_t parts = 0;
   map.EachPart([&](const CloudSunMap::BeamPart&) { ++parts; });
   // Each of 64 x 64 beams has a word of bits and a place, each part two bytes.
   EXPECT_EQ(map.bytes(), 64U * 64U * 12U + 2U * parts);
   EXPECT_LT(parts, 64U * 64U * 24U / 6U) << "clouds cover a fifth of the sky and not all levels";
+}
+
+TEST(CloudSunMap, BeamsOfALowSunEndWhereTheyAreOpaque) {
+  const CloudField field = tests::PlaneLayer(100.0);
+  const CloudSunMap map(field, SunAt(35.0, 0.0));
+  std::size_t parts = 0;
+  double collided_m2 = 0.0;
+  map.EachPart([&](const CloudSunMap::BeamPart& part) {
+    ++parts;
+    collided_m2 += part.area_m2 * (std::exp(-part.depth_above) - std::exp(-part.depth_below));
+  });
+  // The whole depth is 174, of which the upper 37 % are stored, in levels of 20 m. Beams that are
+  // 20 m apart have feet 35 m apart along x.
+  EXPECT_EQ(parts, 11U * 20U * 8U);
+  EXPECT_NEAR(collided_m2, 400.0 * 400.0, 1e-3);
+  EXPECT_NEAR(map.OpticalDepth({0.0, 0.0, 0.0}), 64.0, 1e-3) << "floats";
 }
 
 TEST(CloudSunMap, IsTheSameForAnyNumberOfThreads) {
