@@ -13,6 +13,8 @@ namespace alpenglow::renderer {
 namespace {
 
 constexpr double kHighestLowSun_deg = 10.0;
+// Far away, where only what is left of the light matters, steps are longer.
+constexpr double kStepPerDistance = 0.005, kMostStep = 4.0;
 
 double LowElevation_rad(const glm::dvec3& to_sun) {
   if (!(std::abs(glm::length(to_sun) - 1.0) <= 1e-6)) {
@@ -66,8 +68,10 @@ CloudLowSun::Interval CloudLowSun::Below(double altitude_m, double slope) const 
 double CloudLowSun::OpticalDepth(const glm::dvec3& point) const {
   double depth = 0.0;
   EachChord(point, [&](const CloudRay& ray, double length_m) {
+    const double away_m = glm::length(ray.origin - point);
+    const double most_m = std::clamp(kStepPerDistance * away_m, step_m_, kMostStep * step_m_);
     tracker_.EachSpan(ray, length_m, [&](double begin_m, double end_m, double) {
-      const double steps = std::ceil((end_m - begin_m) / step_m_);
+      const double steps = std::ceil((end_m - begin_m) / most_m);
       const double step_m = (end_m - begin_m) / steps;
       for (double i = 0.0; i < steps && depth < kDeepest; ++i) {
         depth += step_m * tracker_.Extinction_per_m(ray.At(begin_m + (i + 0.5) * step_m));

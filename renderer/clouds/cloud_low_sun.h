@@ -37,7 +37,7 @@ inline constexpr double kLowestCloudLight_deg = -2.1;
 struct CloudLowSunOptions {
   glm::dvec2 place_m{0.0};           // where the sun has the given direction
   double planet_radius_m = 6.371e6;  // in [1e5, 1e9]; 7/6 of it for rays in refracting air
-  double step_m = 20.0;              // largest step in cloud, in [1, 100]
+  double step_m = 20.0;              // in cloud, in [1, 100]; up to four times as long far away
 };
 
 /// Immutable; safe to use from many threads. The field must outlive it.
