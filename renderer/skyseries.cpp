@@ -133,6 +133,8 @@ SeriesPlan PlanOf(const SkyseriesOptions& options) {
   } else {
     plan.frames = FramesAt(times, options.date.has_value(), scene, day);
   }
+  if (!scene.clouds.empty())
+    plan.scene.cloud_day = CloudDayNear(scene, plan.frames.front().instant);
   plan.selected = options.frames ? SelectFrames(plan.frames, *options.frames) : plan.frames;
   plan.settings = options.settings;
   plan.budget = options.budget;

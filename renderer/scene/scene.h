@@ -186,6 +186,9 @@ struct Scene {
   std::vector<MediumLayer> layers;  // at most one
   std::vector<Volume> volumes;
   std::vector<SceneCloud> clouds;
+  /// Day (UTC, modified Julian) from which clouds count their time; empty: that of `time`. See
+  /// CloudTime_s.
+  std::optional<int> cloud_day;
   /// Brightness of the zenith on a moonless night with light pollution [V magnitudes per square
   /// arcsecond]; empty: no light pollution.
   std::optional<double> town_zenith;

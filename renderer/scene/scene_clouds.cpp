@@ -22,7 +22,9 @@ namespace alpenglow::renderer {
 namespace {
 
 constexpr double kSecondsPerDay = 86400.0;
-constexpr int kDaysBefore = 50, kDaysOfTime = 100;
+// Times begin kDaysBefore the day of the scene and return after kDaysOfTime; those of a series go on
+// for kDaysMore.
+constexpr int kDaysBefore = 50, kDaysOfTime = 100, kDaysMore = 15;
 
 /// A usual sky.
 struct CloudPreset {
@@ -155,13 +157,22 @@ std::vector<SceneCloudField> CloudFieldsOf(const Scene& scene, double time_s) {
 
 int CloudDayOf(const Scene& scene) {
   constexpr int kDefaultDay = 61212;  // 2026-06-21
+  if (scene.cloud_day) return *scene.cloud_day;
   return scene.time ? scene.time->modified_julian_day : kDefaultDay;
 }
 
+int CloudDayNear(const Scene& scene, const UtcTime& begin) {
+  const int day = CloudDayOf(scene);
+  const double turns = (begin.modified_julian_day - day + kDaysBefore) / double{kDaysOfTime};
+  return day + kDaysOfTime * static_cast<int>(std::floor(turns));
+}
+
 double CloudTime_s(const Scene& scene, const UtcTime& instant) {
+  const double longest_s = (kDaysOfTime + (scene.cloud_day ? kDaysMore : 0)) * kSecondsPerDay;
   constexpr double kAll_s = kDaysOfTime * kSecondsPerDay;
   const UtcTime begin(CloudDayOf(scene) - kDaysBefore, 0.0);
   const double time_s = SecondsBetween(begin, instant);
+  if (time_s >= 0.0 && time_s < longest_s) return time_s;
   return time_s - kAll_s * std::floor(time_s / kAll_s);
 }
 

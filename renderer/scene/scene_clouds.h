@@ -35,14 +35,20 @@ struct SceneCloudField {
 /// @param time_s  see CloudTime_s.
 [[nodiscard]] std::vector<SceneCloudField> CloudFieldsOf(const Scene& scene, double time_s);
 
-/// Returns the time of the clouds at an instant [s], in [0, 8.64e6]. Differences of times are those
-/// of instants (SecondsBetween) from 50 days before the scene's day to 50 days after it; beyond, the
-/// same times return every 100 days.
+/// Returns the time of the clouds at an instant [s], in [0, 1e7]. Differences of times are those of
+/// instants (SecondsBetween) from 50 days before CloudDayOf to 50 days after it, or 65 days if
+/// Scene::cloud_day is set. Beyond, the same times return every 100 days.
 [[nodiscard]] double CloudTime_s(const Scene& scene, const UtcTime& instant);
 
-/// Returns the day (UTC) of a scene's time as a modified Julian day. Clouds at an instant depend on
-/// it. A scene without a time has the day of SceneFromOptions, 2026-06-21.
+/// Returns the day (UTC) from which the clouds of a scene count their time, as a modified Julian day:
+/// Scene::cloud_day, or the day of the scene's time. Clouds at an instant depend on it. A scene
+/// without a time has the day of SceneFromOptions, 2026-06-21.
 [[nodiscard]] int CloudDayOf(const Scene& scene);
+
+/// Returns the day that lies a multiple of 100 days from CloudDayOf, and whose 50 days before and
+/// after it contain an instant. With this day the times of a series that begins at the instant are
+/// continuous for 15 days at least, and those up to 50 days after it are the same as before.
+[[nodiscard]] int CloudDayNear(const Scene& scene, const UtcTime& begin);
 
 /// Reads "none", or layers separated by commas: a preset ("fair", "broken", "high"), or a genus with
 /// or without its cover: "cumulus 0.3, cirrus". Other options are those of the genus; seeds count
