@@ -41,13 +41,13 @@ struct CloudGather::March {
         peak(gather.optics_->peak().AtAngle(glm::dot(along.direction, gather.map_->to_sun()))),
         factors(gather.optics_->SourceFactors(-along.direction)) {}
 
-  [[nodiscard]] glm::dvec3 At(double along_m) const {
-    const glm::dvec3 bend(0.0, 0.0, bend_per_m * along_m * along_m);
-    return ray.origin + bend + along_m * ray.direction;
+  [[nodiscard]] glm::dvec3 At(double distance_m) const {
+    const glm::dvec3 bend_m(0.0, 0.0, bend_per_m * distance_m * distance_m);
+    return ray.origin + distance_m * ray.direction + bend_m;
   }
-  [[nodiscard]] glm::dvec3 DirectionAt(double along_m) const {
+  [[nodiscard]] glm::dvec3 DirectionAt(double distance_m) const {
     if (bend_per_m == 0.0) return ray.direction;
-    return glm::normalize(ray.direction + glm::dvec3(0.0, 0.0, 2.0 * bend_per_m * along_m));
+    return glm::normalize(ray.direction + glm::dvec3(0.0, 0.0, 2.0 * bend_per_m * distance_m));
   }
 
   /// Returns the light of the whole ray. The rest of a ray that was not followed to its end is like
