@@ -32,10 +32,10 @@
 namespace alpenglow::renderer {
 
 struct CloudLightOptions {
-  CloudMomentOptions moments;
-  CloudSunMapOptions sun_map;
-  CloudFactorOptions factor;
-  CloudGatherOptions gather;
+  CloudMomentOptions moments = {};
+  CloudSunMapOptions sun_map = {};
+  CloudFactorOptions factor = {};
+  CloudGatherOptions gather = {};
 };
 
 /// Light that clouds scatter into a ray, and what they leave of the light behind it.

@@ -11,6 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase.h"
+#include "atmosphere/medium/phase_table.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/clouds/droplet_phase.h"
