@@ -9,8 +9,14 @@
 //   L += T_i A (E_beam sun_i + L_sky sky_i + L_ground ground_i)
 //
 // Clouds stand in the air as screens at the mean distance of their light, which the air in front dims
-// and veils. Not modelled: air inside a cloud that scatters more than once between droplets, skylight
-// that differs with direction or place, and the light of a cloud on the air around it.
+// and veils. Not modelled:
+//
+//   - skylight and light from the ground that differ with direction or place under a field;
+//   - the light of clouds on the air around them: light that the air scatters more than once is that
+//     of a clear sky;
+//   - lamps and towns as sources;
+//   - a beam less than kLowestCloudSun_deg high: strength and colour are those of the lower sun, the
+//     direction is not.
 #pragma once
 
 #include <cstddef>
