@@ -18,9 +18,9 @@
 
 #include "atmosphere/astronomy/light_direction.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/medium.h"
 #include "renderer/layer.h"
-#include "renderer/material/band_light.h"
 #include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {

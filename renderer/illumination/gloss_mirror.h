@@ -26,10 +26,10 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/illumination/occluded_sky.h"
 #include "renderer/layer.h"
-#include "renderer/material/band_light.h"
 #include "renderer/material/reflectance.h"
 
 namespace alpenglow::renderer {

@@ -11,6 +11,7 @@
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/refraction/refracted_view.h"
@@ -22,7 +23,6 @@
 #include "renderer/illumination/night_light.h"
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/layer.h"
-#include "renderer/material/band_light.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/surface.h"
 

@@ -40,7 +40,6 @@
 #include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
-#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 

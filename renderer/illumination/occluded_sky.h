@@ -19,10 +19,10 @@
 #include <span>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/layer.h"
-#include "renderer/material/band_light.h"
 #include "renderer/visibility/horizon_map.h"
 
 namespace alpenglow::renderer {

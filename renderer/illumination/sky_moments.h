@@ -9,9 +9,9 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/layer.h"
-#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 

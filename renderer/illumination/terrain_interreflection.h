@@ -20,9 +20,9 @@
 #include <span>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/elevation/mesh.h"
 #include "renderer/illumination/occluded_sky.h"
-#include "renderer/material/band_light.h"
 #include "renderer/visibility/horizon_map.h"
 
 namespace alpenglow::renderer {

@@ -8,10 +8,10 @@
 #include <mutex>
 #include <optional>
 
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/elevation/mesh.h"
 #include "renderer/illumination/occluded_sky.h"
 #include "renderer/illumination/terrain_interreflection.h"
-#include "renderer/material/band_light.h"
 #include "renderer/material/reflectance.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/visibility/horizon_map.h"

@@ -10,12 +10,12 @@
 #include <limits>
 #include <numeric>
 
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/airlight.h"
 #include "lut/cli/program.h"
 #include "renderer/lamps/lamp_tree.h"
 #include "renderer/lamps/placed_lamp.h"
 #include "renderer/lamps/tile_cut.h"
-#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 struct LampLight::State {

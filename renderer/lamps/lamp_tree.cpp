@@ -12,10 +12,10 @@
 #include <limits>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -26,13 +26,13 @@
 #include <optional>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/solved_air.h"
 #include "renderer/illumination/distant_light.h"
 #include "renderer/lit_clouds/cloud_chords.h"
 #include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/lit_clouds/cloud_shadow.h"
 #include "renderer/lit_clouds/layer_exchange.h"
-#include "renderer/material/band_light.h"
 #include "renderer/media/lit_medium.h"
 #include "renderer/surface/scene_geometry.h"
 

@@ -8,6 +8,7 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/illumination/polarised_axes.h"
 
 namespace alpenglow::renderer {
 namespace {

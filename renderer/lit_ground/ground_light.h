@@ -8,12 +8,12 @@
 #include <memory>
 #include <optional>
 
+#include "lut/multiple_scattering/polarised_scattering.h"
 #include "lut/multiple_scattering/solved_air.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/lit_clouds/lit_clouds.h"
-#include "renderer/material/band_light.h"
 #include "renderer/media/media_light.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/surface.h"

@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/solved_air.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/lamps/lamp_light.h"
-#include "renderer/material/band_light.h"
 #include "renderer/media/local_media.h"
 
 namespace alpenglow::renderer {

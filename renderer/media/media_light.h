@@ -11,10 +11,10 @@
 #include <glm/vec3.hpp>
 #include <memory>
 
+#include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/solved_air.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/lamps/lamp_light.h"
-#include "renderer/material/band_light.h"
 #include "renderer/media/lit_medium.h"
 #include "renderer/media/local_media.h"
 #include "renderer/media/media_march.h"

@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/material/band_light.h"
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/media/local_media.h"
 
 namespace alpenglow::renderer {

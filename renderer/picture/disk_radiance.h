@@ -5,8 +5,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/illumination/aerial_perspective.h"
-#include "renderer/material/band_light.h"
 #include "renderer/picture/frame_context.h"
 
 namespace alpenglow::renderer {

@@ -11,6 +11,7 @@
 #include "lut/image/image.h"
 #include "lut/image/night_vision.h"
 #include "renderer/effects/effect_choice.h"
+#include "renderer/illumination/polarised_axes.h"
 #include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {

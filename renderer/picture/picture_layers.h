@@ -20,7 +20,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/error_statistics.h"
 #include "lut/image/image.h"
-#include "renderer/material/band_light.h"
+#include "lut/multiple_scattering/polarised_scattering.h"
 #include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/illumination/polarised_axes.h"
 #include "renderer/lit_ground/ground_light.h"
 #include "renderer/picture/disk_radiance.h"
 #include "renderer/picture/refracted_view_rays.h"

@@ -6,9 +6,9 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
+#include "lut/multiple_scattering/polarised_scattering.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/lamps/lamp_light.h"
-#include "renderer/material/band_light.h"
 #include "renderer/picture/frame_context.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/shared_segment_air.h"

@@ -54,8 +54,8 @@
 #include <optional>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/picture/shared_segment_air.h"
+#include "renderer/illumination/polarised_axes.h"
 
 #include <algorithm>
 #include <cmath>

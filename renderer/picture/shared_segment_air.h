@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/illumination/aerial_perspective.h"
-#include "renderer/material/band_light.h"
 #include "renderer/media/media_light.h"
 #include "renderer/picture/frame_context.h"
 #include "renderer/surface/scene_geometry.h"

@@ -8,8 +8,8 @@
 #include <functional>
 #include <glm/vec3.hpp>
 
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/material/band_light.h"
 #include "renderer/picture/spread_light.h"
 
 namespace alpenglow::renderer {

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <unordered_map>
 
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 

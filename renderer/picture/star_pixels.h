@@ -15,9 +15,9 @@
 #include <optional>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/illumination/night_light.h"
-#include "renderer/material/band_light.h"
 #include "renderer/picture/spread_light.h"
 
 namespace alpenglow::renderer {

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/material/band_light.h"
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_ground.h"
 

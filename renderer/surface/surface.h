@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/time_place/time.h"
-#include "renderer/material/band_light.h"
 #include "renderer/material/land_cover.h"
 #include "renderer/material/reflectance.h"
 #include "renderer/scene/scene.h"

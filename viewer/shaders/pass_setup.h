@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/medium.h"
-#include "renderer/material/band_light.h"
 #include "renderer/surface/ground_pattern.h"
 #include "renderer/surface/surface.h"
 #include "viewer/gl/gl_context.h"

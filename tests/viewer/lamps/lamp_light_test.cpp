@@ -11,10 +11,10 @@
 #include <numeric>
 #include <random>
 
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/ray/shell.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/lamps/lamp_light.h"
-#include "renderer/material/band_light.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/lamp_site.h"
 #include "tests/fixtures/sanitized.h"

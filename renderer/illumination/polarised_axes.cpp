@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/material/band_light.h"
+#include "renderer/illumination/polarised_axes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
