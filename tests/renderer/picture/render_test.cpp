@@ -570,7 +570,7 @@ TEST(PictureLayers, CloudsHaveTheMeanOfTheirDistances) {
   EXPECT_FLOAT_EQ(mean[3], 0.4375F);
   // Clouds take 0.25, 1 and 1 of the light, at 8, 3 and 3 km.
   EXPECT_FLOAT_EQ(mean[4], (0.25F * 8000.0F + 2.0F * 3000.0F) / 2.25F);
-  EXPECT_FLOAT_EQ(mean[1], 0.5F * static_cast<float>(colour.LinearSrgb(InDouble(thick.clouds))[1]))
+  EXPECT_FLOAT_EQ(mean[1], 0.5F * static_cast<float>(colour.LinearSrgb(thick.clouds)[1]))
       << "two of four rays have light";
 }
 
