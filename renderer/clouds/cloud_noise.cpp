@@ -161,6 +161,25 @@ std::vector<float> OctaveTexels(int side, const NoiseOctaves& octaves, const Oct
   return texels;
 }
 
+/// The texels around a point of a cube, and the place of the point between them.
+struct TexelCell {
+  std::array<std::size_t, 3> low{}, high{};
+  std::array<float, 3> share{};
+};
+
+TexelCell TexelCellOf(const glm::dvec3& periods, int side) {
+  const glm::dvec3 texels = static_cast<double>(side) * periods;
+  TexelCell cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const std::int32_t floor = WholePart(texels[axis]);
+    cell.share[a] = static_cast<float>(texels[axis] - floor);
+    cell.low[a] = static_cast<std::size_t>(floor & (side - 1));
+    cell.high[a] = static_cast<std::size_t>((floor + 1) & (side - 1));
+  }
+  return cell;
+}
+
 void CheckNoise(int side, const NoiseOctaves& octaves) {
   const bool is_power = side >= 8 && side <= 256 && (side & (side - 1)) == 0;
   ALPENGLOW_ENSURE(is_power, ==, true);
@@ -226,27 +245,53 @@ TilingNoise::TilingNoise(int side, std::vector<float> texels)
       largest_(*std::max_element(texels_.begin(), texels_.end())) {}
 
 double TilingNoise::At(const glm::dvec3& periods) const {
-  const glm::dvec3 texels = static_cast<double>(side_) * periods;
-  std::array<std::size_t, 3> low{}, high{};
-  std::array<float, 3> share{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const std::int32_t floor = WholePart(texels[axis]);
-    share[a] = static_cast<float>(texels[axis] - floor);
-    low[a] = static_cast<std::size_t>(floor & (side_ - 1));
-    high[a] = static_cast<std::size_t>((floor + 1) & (side_ - 1));
-  }
+  const TexelCell cell = TexelCellOf(periods, side_);
   const auto n = static_cast<std::size_t>(side_);
   const auto along_x = [&](std::size_t y, std::size_t z) {
     const float* row = texels_.data() + (z * n + y) * n;
-    return row[low[0]] + share[0] * (row[high[0]] - row[low[0]]);
+    return row[cell.low[0]] + cell.share[0] * (row[cell.high[0]] - row[cell.low[0]]);
   };
   const auto along_xy = [&](std::size_t z) {
-    const float south = along_x(low[1], z);
-    return south + share[1] * (along_x(high[1], z) - south);
+    const float south = along_x(cell.low[1], z);
+    return south + cell.share[1] * (along_x(cell.high[1], z) - south);
   };
-  const float below = along_xy(low[2]);
-  return static_cast<double>(below + share[2] * (along_xy(high[2]) - below));
+  const float below = along_xy(cell.low[2]);
+  return static_cast<double>(below + cell.share[2] * (along_xy(cell.high[2]) - below));
+}
+
+TilingVectorNoise::TilingVectorNoise(int side, const NoiseOctaves& octaves) : side_(side) {
+  NoiseOctaves seeded = octaves;
+  least_ = largest_ = 0.0;
+  const auto n = static_cast<std::size_t>(side);
+  texels_.resize(n * n * n);
+  for (std::size_t component = 0; component < 3; ++component, seeded.seed += 100U) {
+    const TilingNoise noise = TilingNoise::Value(side, seeded);
+    least_ = std::min(least_, noise.Least());
+    largest_ = std::max(largest_, noise.Largest());
+    for (std::size_t i = 0; i < texels_.size(); ++i) texels_[i][component] = noise.Texel(i);
+  }
+}
+
+glm::dvec3 TilingVectorNoise::At(const glm::dvec3& periods) const {
+  const TexelCell cell = TexelCellOf(periods, side_);
+  const auto n = static_cast<std::size_t>(side_);
+  const auto texel = [&](std::size_t x, std::size_t y, std::size_t z) {
+    Four four;
+    __builtin_memcpy(&four, texels_.data() + (z * n + y) * n + x, sizeof four);
+    return four;
+  };
+  const auto along_x = [&](std::size_t y, std::size_t z) {
+    const Four west = texel(cell.low[0], y, z);
+    return west + cell.share[0] * (texel(cell.high[0], y, z) - west);
+  };
+  const auto along_xy = [&](std::size_t z) {
+    const Four south = along_x(cell.low[1], z);
+    return south + cell.share[1] * (along_x(cell.high[1], z) - south);
+  };
+  const Four below = along_xy(cell.low[2]);
+  const Four value = below + cell.share[2] * (along_xy(cell.high[2]) - below);
+  return {static_cast<double>(value[0]), static_cast<double>(value[1]),
+          static_cast<double>(value[2])};
 }
 
 }  // namespace alpenglow::renderer

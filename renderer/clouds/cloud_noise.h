@@ -7,6 +7,7 @@
 // meet in creases, as the tops of cumulus do.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -57,6 +58,8 @@ class TilingNoise {
   /// Returns the noise. @param periods  coordinates in periods, within 1e6.
   [[nodiscard]] double At(const glm::dvec3& periods) const;
   [[nodiscard]] int side() const { return side_; }
+  /// Returns a texel; x runs fastest.
+  [[nodiscard]] float Texel(std::size_t i) const { return texels_[i]; }
   /// Returns bounds of the noise.
   [[nodiscard]] double Least() const { return static_cast<double>(least_); }
   [[nodiscard]] double Largest() const { return static_cast<double>(largest_); }
@@ -67,6 +70,29 @@ class TilingNoise {
   int side_;
   std::vector<float> texels_;
   float least_, largest_;
+};
+
+/// Three independent cubes of value noise, evaluated together. Immutable; safe to use from many
+/// threads.
+class TilingVectorNoise {
+ public:
+  /// @param side  as for TilingNoise. The cubes have the seed of the octaves and the two hundreds
+  /// above.
+  TilingVectorNoise(int side, const NoiseOctaves& octaves);
+
+  /// Returns the noise. @param periods  coordinates in periods, within 1e6.
+  [[nodiscard]] glm::dvec3 At(const glm::dvec3& periods) const;
+  /// Returns bounds of each component.
+  [[nodiscard]] double Least() const { return least_; }
+  [[nodiscard]] double Largest() const { return largest_; }
+
+ private:
+  // One component is unused: four floats are processed by one instruction.
+  using Four = float __attribute__((vector_size(16)));
+
+  int side_;
+  std::vector<std::array<float, 4>> texels_;
+  double least_, largest_;
 };
 
 }  // namespace alpenglow::renderer

@@ -545,10 +545,7 @@ class HeapShape final : public CloudShape {
   [[nodiscard]] double Displacement(const glm::dvec3& point) const {
     constexpr double kBendTile_m = 1280.0;
     const glm::dvec3 risen = point - glm::dvec3(0.0, 0.0, rise_m_);
-    const glm::dvec3 at = risen / kBendTile_m;
-    const glm::dvec3 bend(ShapeNoise::Smooth().At(at),
-                          ShapeNoise::Smooth().At(at + glm::dvec3(0.37, 0.11, 0.7)),
-                          ShapeNoise::Smooth().At(at + glm::dvec3(0.71, 0.53, 0.2)));
+    const glm::dvec3 bend = ShapeNoise::Smooth().At(risen / kBendTile_m);
     const glm::dvec3 bent = risen + kBend_m * bend;
     const double noise =
         kLarge_m *

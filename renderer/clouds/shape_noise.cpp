@@ -14,7 +14,7 @@ constexpr int kTexels = 128;
 /// Makes a cube of noise. A thread that waits for the parts of it must not begin other work, which
 /// could ask for the same cube.
 template <typename Make>
-TilingNoise Isolated(const Make& make) {
+auto Isolated(const Make& make) {
   return tbb::this_task_arena::isolate(make);
 }
 
@@ -27,9 +27,9 @@ const TilingNoise& ShapeNoise::Billow() {
   return noise;
 }
 
-const TilingNoise& ShapeNoise::Smooth() {
-  static const TilingNoise noise = Isolated([] {
-    return TilingNoise::Value(kTexels / 2, {4, 3, 0.5, 5});
+const TilingVectorNoise& ShapeNoise::Smooth() {
+  static const TilingVectorNoise noise = Isolated([] {
+    return TilingVectorNoise(kTexels / 2, {4, 3, 0.5, 5});
   });
   return noise;
 }

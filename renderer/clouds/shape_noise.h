@@ -18,8 +18,8 @@ inline constexpr double kLargeTile_m = 2560.0, kSmallTile_m = 640.0;
 struct ShapeNoise {
   /// Bumps of a quarter of the period and less.
   [[nodiscard]] static const TilingNoise& Billow();
-  /// Smooth noise with waves of a quarter of the period and less.
-  [[nodiscard]] static const TilingNoise& Smooth();
+  /// Smooth offsets with waves of a quarter of the period and less.
+  [[nodiscard]] static const TilingVectorNoise& Smooth();
 };
 
 /// Random numbers by count: number i of a stream depends on nothing else.

@@ -52,6 +52,24 @@ TEST(CloudNoise, CubesRepeatWithoutSeam) {
   }
 }
 
+TEST(CloudNoise, ComponentsOfVectorsAreIndependentCubes) {
+  const NoiseOctaves octaves{4, 3, 0.5, 3};
+  const TilingVectorNoise vectors(32, octaves);
+  const TilingNoise first = TilingNoise::Value(32, octaves);
+  double product = 0.0, largest = 0.0;
+  constexpr int kPoints = 20000;
+  for (int i = 0; i < kPoints; ++i) {
+    const glm::dvec3 at(0.0137 * i, 0.0471 * i, 0.00293 * i);
+    const glm::dvec3 value = vectors.At(at);
+    EXPECT_NEAR(value.x, first.At(at), 1e-6) << "the order of sums of floats";
+    product += value.x * value.y / kPoints;
+    largest = std::max({largest, value.x, value.y, value.z});
+  }
+  // 64 independent cells of the first octave leave a correlation of 1 / 8 by chance.
+  EXPECT_LT(std::abs(product), 0.3);
+  EXPECT_LE(largest, vectors.Largest() + 1e-6);
+}
+
 TEST(CloudNoise, CubesStayWithinTheirBounds) {
   const TilingNoise noise = TilingNoise::Billow(32, {4, 3, 0.55, 3});
   for (int i = 0; i < 5000; ++i) {
