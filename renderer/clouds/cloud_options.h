@@ -7,8 +7,8 @@
 // Content and size of the crystals of cirrus: Heymsfield and Platt (1984), J. Atmos. Sci. 41, 846;
 // the extinction is about 1 per km.
 //
-// Winds grow with height as the mean westerlies of middle latitudes do (Peixoto and Oort 1992, Physics
-// of Climate, chapter 7).
+// Winds are typical values that this project chose; they grow with height, as winds of middle latitudes
+// usually do.
 //
 // Cover is the fraction of the sky, seen vertically, with an optical depth above 0.3; for cirrus
 // above 0.03, where cirrus begins to be visible (Sassen and Cho 1992, J. Appl. Meteor. 31, 1275).

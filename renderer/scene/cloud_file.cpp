@@ -107,8 +107,11 @@ PlacedDensities FromVdb(const fs::path& file, const CloudFileOptions& options) {
 }
 
 CloudField FieldOf(const fs::path& file, PlacedDensities placed, const CloudFileOptions& options) {
-  RequireInRange(options.extinction_per_m, 1e-9, 1e6, "the extinction of the density 1 [1/m]");
-  RequireInRange(options.effective_radius_um, 0.01, 1e4, "the effective radius [um]");
+  using Ranges = CloudFileRanges;
+  RequireInRange(options.extinction_per_m, Ranges::kExtinction_per_m.first,
+                 Ranges::kExtinction_per_m.second, "the extinction of the density 1 [1/m]");
+  RequireInRange(options.effective_radius_um, Ranges::kRadius_um.first, Ranges::kRadius_um.second,
+                 "the effective radius [um]");
   CloudLattice lattice;
   lattice.is_periodic = options.is_periodic;
   const int ends = options.is_periodic ? 0 : 1;

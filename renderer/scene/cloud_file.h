@@ -15,6 +15,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "renderer/clouds/cloud_field.h"
 
@@ -23,11 +24,18 @@ namespace alpenglow::renderer {
 /// The largest number of samples of a file: fields of more take more than 2 GB while they are read.
 inline constexpr double kMostCloudSamples = 2e8;
 
+/// Least and greatest values of CloudFileOptions.
+struct CloudFileRanges {
+  static constexpr std::pair kSpacing_m{1e-3, 1e5};
+  static constexpr std::pair kExtinction_per_m{1e-9, 1e6};
+  static constexpr std::pair kRadius_um{0.01, 1e4};
+};
+
 struct CloudFileOptions {
   /// The field repeats after its samples along x and y; otherwise it ends at the last ones.
   bool is_periodic = false;
-  /// Distance between samples [m], > 0. NRRD and raw files need it; for OpenVDB it replaces that of
-  /// the file. Text has its own.
+  /// Distance between samples [m], in [1e-3, 1e5]. NRRD and raw files need it; for OpenVDB it
+  /// replaces that of the file. Text has its own.
   std::optional<glm::dvec3> spacing_m = {};
   glm::dvec3 origin_m{0.0};  // is added to all places of the file; z not of text
   std::optional<std::array<int, 3>> samples = {};  // along x, y, z; of raw files

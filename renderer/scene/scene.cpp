@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -362,6 +363,19 @@ std::vector<double> RequireThree(const TomlSection& table, const std::string& ke
       key, fmt::format("{} has {} values; it must have three", table.FullName(key), values.size()));
 }
 
+std::array<int, 3> GridSizeOf(const TomlSection& table) {
+  const std::vector<double> sides = RequireThree(table, "grid_size");
+  std::array<int, 3> size{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (sides[i] != std::floor(sides[i])) {
+      table.Fail("grid_size", fmt::format("{} has {}; samples are counted in whole numbers",
+                                          table.FullName("grid_size"), sides[i]));
+    }
+    size[i] = static_cast<int>(sides[i]);
+  }
+  return size;
+}
+
 void ReadDensity(const TomlSection& table, const fs::path& folder, Volume& volume) {
   const std::optional<fs::path> grid = FileNamedBy(table, "grid", folder);
   if (!grid) {
@@ -376,15 +390,7 @@ void ReadDensity(const TomlSection& table, const fs::path& folder, Volume& volum
   }
   if (!table.Has("grid_size"))
     At(table, "grid", [&] { RefuseKnownFormats(volume.grid, kVolumesWanted); });
-  const std::vector<double> sides = RequireThree(table, "grid_size");
-  volume.grid_size.emplace();
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (sides[i] != std::floor(sides[i])) {
-      table.Fail("grid_size", fmt::format("{} has {}; samples are counted in whole numbers",
-                                          table.FullName("grid_size"), sides[i]));
-    }
-    (*volume.grid_size)[i] = static_cast<int>(sides[i]);
-  }
+  volume.grid_size = GridSizeOf(table);
 }
 
 /// Returns the extinction: the given one, or that of a visibility.
@@ -470,6 +476,99 @@ void CheckGenusKeys(const TomlSection& table, const CloudOptions& options) {
   }
 }
 
+using Keys = std::vector<const char*>;
+
+/// Returns whether a key is in a list.
+bool IsIn(const Keys& keys, std::string_view key) {
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+/// The keys that a format of cloud grids needs, and those that it may have.
+struct CloudFormat {
+  const char* name;
+  Keys endings, needed, allowed;
+};
+
+const std::vector<CloudFormat>& CloudFormats() {
+  static const std::vector<CloudFormat> formats{
+      {"text", {".txt", ".dat"}, {}, {}},
+      {"OpenVDB",
+       {".vdb"},
+       {},
+       {"base_height_m", "spacing_m", "extinction_per_m", "effective_radius_um", "vdb_grid", "up"}},
+      {"NRRD",
+       {".nrrd", ".nhdr"},
+       {"base_height_m", "spacing_m"},
+       {"extinction_per_m", "effective_radius_um"}},
+      {"raw",
+       {".raw"},
+       {"base_height_m", "spacing_m", "grid_size"},
+       {"extinction_per_m", "effective_radius_um"}}};
+  return formats;
+}
+
+/// The keys of a grid that depend on its format.
+const Keys kFormatKeys{"base_height_m",       "spacing_m", "grid_size", "extinction_per_m",
+                       "effective_radius_um", "vdb_grid",  "up"};
+
+const CloudFormat& CloudFormatOf(const TomlSection& table, const fs::path& grid) {
+  Keys endings;
+  for (const CloudFormat& format : CloudFormats()) {
+    for (const char* ending : format.endings) {
+      if (HasExtension(grid, ending)) return format;
+      endings.push_back(ending);
+    }
+  }
+  table.Fail("grid",
+             fmt::format("{} is \"{}\"; its ending must be one of {}", table.FullName("grid"),
+                         Printable(grid.filename().string()), fmt::join(endings, ", ")));
+}
+
+/// Returns the names of the formats that have a key: "OpenVDB, raw".
+std::string CloudFormatsWith(std::string_view key) {
+  Keys names;
+  for (const CloudFormat& format : CloudFormats()) {
+    if (IsIn(format.needed, key) || IsIn(format.allowed, key)) names.push_back(format.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Refuses keys that the format of a grid does not have, and a grid without those that it needs.
+void CheckFormatKeys(const TomlSection& table, const CloudFormat& format) {
+  for (const char* key : kFormatKeys) {
+    const std::string name = table.FullName(key);
+    if (IsIn(format.needed, key) && !table.Has(key))
+      table.Fail(key, fmt::format("{} is missing; {} needs it", name, format.name));
+    if (table.Has(key) && !IsIn(format.needed, key) && !IsIn(format.allowed, key)) {
+      table.Fail(key, fmt::format("{} is for grids of {}; this is {}", name, CloudFormatsWith(key),
+                                  format.name));
+    }
+  }
+}
+
+std::optional<glm::dvec3> SpacingOf(const TomlSection& table) {
+  const std::optional<std::vector<double>> list = table.Numbers("spacing_m");
+  if (!list) return std::nullopt;
+  if (list->size() == 1) return glm::dvec3(list->front());
+  if (list->size() == 3) return glm::dvec3((*list)[0], (*list)[1], (*list)[2]);
+  table.Fail("spacing_m", fmt::format("{} has {} values; it must have one, or three along x, y, z",
+                                      table.FullName("spacing_m"), list->size()));
+}
+
+/// Reads the keys of a layer with a grid.
+void ReadGridKeys(const TomlSection& table, SceneCloud& cloud) {
+  RefuseKeys(table,
+             {"cover", "depth_m", "droplets_per_cm3", "ice_mg_per_m3", "crystal_radius_um", "seed",
+              "period_m"},
+             "is for clouds without a grid");
+  CheckFormatKeys(table, CloudFormatOf(table, cloud.grid));
+  cloud.file.spacing_m = SpacingOf(table);
+  if (table.Has("grid_size")) cloud.file.samples = GridSizeOf(table);
+  cloud.file.grid = table.Text("vdb_grid").value_or("");
+  if (const auto latitude = table.Number("latitude"))
+    cloud.middle = CheckedPlace({*latitude, *table.Number("longitude"), 0.0});
+}
+
 /// @param number  of the table, from 0.
 SceneCloud CloudOf(const TomlTable& entry, const fs::path& folder, std::size_t number) {
   const TomlSection table(entry, CloudFields().Keys());
@@ -480,21 +579,22 @@ SceneCloud CloudOf(const TomlTable& entry, const fs::path& folder, std::size_t n
   if (const auto genus = table.Text("genus"))
     cloud.options = DefaultCloudOptions(*kCloudGenusNames.Find(*genus));
   cloud.options.seed = static_cast<std::uint32_t>(number) + 1U;
-  if (grid) cloud.options.wind_m_per_s = {0.0, 0.0};
+  if (grid) {
+    cloud.options.wind_m_per_s = {0.0, 0.0};
+    cloud.options.base_altitude_m = 0.0;
+  }
   CloudFields().Read(table, cloud);
   if (!grid) {
-    RefuseKeys(table, {"repeats", "latitude", "longitude"}, "is for a grid");
+    RefuseKeys(table,
+               {"repeats", "latitude", "longitude", "spacing_m", "grid_size", "extinction_per_m",
+                "effective_radius_um", "vdb_grid", "up"},
+               "is for a grid");
     CheckGenusKeys(table, cloud.options);
     cloud.is_over_ground = FollowsGround(cloud.options.genus) && !table.Has("base_height_m");
     return cloud;
   }
-  RefuseKeys(table,
-             {"cover", "base_height_m", "depth_m", "droplets_per_cm3", "ice_mg_per_m3",
-              "crystal_radius_um", "seed", "period_m"},
-             "is for clouds without a grid");
   cloud.grid = *grid;
-  if (const auto latitude = table.Number("latitude"))
-    cloud.middle = CheckedPlace({*latitude, *table.Number("longitude"), 0.0});
+  ReadGridKeys(table, cloud);
   return cloud;
 }
 

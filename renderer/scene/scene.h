@@ -17,6 +17,7 @@
 #include "renderer/clouds/cloud_options.h"
 #include "renderer/elevation/elevation.h"
 #include "renderer/elevation/mesh.h"
+#include "renderer/scene/cloud_file.h"
 #include "renderer/scene/volume_grid.h"
 
 namespace alpenglow::renderer {
@@ -165,9 +166,11 @@ struct Volume {
 /// A layer of clouds over the whole scene, or a field of others; see CloudFieldsOf.
 struct SceneCloud {
   std::string name;            // in messages: "scene.toml: cloud[0]"
-  CloudOptions options;        // of a grid: the genus and the wind alone
-  std::filesystem::path grid;  // see ReadCloudGrid; empty: a layer of the genus
-  bool repeats = false;        // a grid repeats beyond its sides
+  CloudOptions options;        // of a grid: the genus, the wind and the base alone
+  std::filesystem::path grid;  // see ReadCloudField; empty: a layer of the genus
+  /// How a grid is read; its origin follows from the base and from `middle`. The base of NRRD and raw
+  /// files is that of their lowest samples, that of OpenVDB is the height of z = 0, and text has none.
+  CloudFileOptions file;
   /// The base is a height above the ground at the scene's place, not above the ellipsoid; see
   /// OverEllipsoid. It is the default of genera with low bases.
   bool is_over_ground = false;

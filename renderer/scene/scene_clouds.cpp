@@ -16,7 +16,6 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/clouds/cloud_generator.h"
-#include "renderer/clouds/cloud_grid_file.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -110,10 +109,12 @@ glm::dvec2 MiddleOf(const SceneCloud& cloud, const Scene& scene) {
   return {LocalFrame(planet, scene.place).EnuFromGeodetic(*cloud.middle).xyz};
 }
 
-/// Returns the field of a file, around its middle. Further formats of files belong here.
+/// Returns the field of a file, around its middle.
 CloudField GridField(const SceneCloud& cloud, const Scene& scene) {
+  CloudFileOptions options = cloud.file;
+  options.origin_m = {0.0, 0.0, cloud.options.base_altitude_m};
   const CloudField field =
-      OfLayer(cloud, "grid", [&] { return ReadCloudGrid(cloud.grid, cloud.repeats); });
+      OfLayer(cloud, "grid", [&] { return ReadCloudField(cloud.grid, options); });
   const CloudLattice& lattice = field.lattice();
   const glm::dvec2 own_middle(lattice.origin_m + 0.5 * lattice.size_m());
   return field.Moved(MiddleOf(cloud, scene) - own_middle);

@@ -80,6 +80,51 @@ TomlMember<SceneCloud> CloudWind() {
   return wind;
 }
 
+/// The member of a part of the object.
+template <typename Object, typename Part>
+TomlMember<Object> OfPart(Part Object::*part, const TomlMember<Part>& member) {
+  return {member.type,
+          [=](const TomlValue& value, Object& object) { member.set(value, object.*part); },
+          [=](const Object& object) { return member.get(object.*part); }};
+}
+
+/// One or three numbers; the reader of the file takes them itself.
+TomlMember<CloudFileOptions> GridSpacing() {
+  TomlMember<CloudFileOptions> spacing = Numbers<CloudFileOptions>(CloudFileRanges::kSpacing_m);
+  spacing.get = [](const CloudFileOptions& file) -> std::optional<TomlValue> {
+    if (!file.spacing_m) return std::nullopt;
+    return TomlValue(std::vector{file.spacing_m->x, file.spacing_m->y, file.spacing_m->z});
+  };
+  return spacing;
+}
+
+/// Three whole numbers; the reader of the file takes them itself.
+TomlMember<CloudFileOptions> GridSamples() {
+  TomlMember<CloudFileOptions> samples = Numbers<CloudFileOptions>({2.0, kMostGridSamples});
+  samples.get = [](const CloudFileOptions& file) -> std::optional<TomlValue> {
+    if (!file.samples) return std::nullopt;
+    return TomlValue(std::vector<double>(file.samples->begin(), file.samples->end()));
+  };
+  return samples;
+}
+
+/// A text; the reader of the file takes it itself.
+TomlMember<CloudFileOptions> VdbGridName() {
+  TomlMember<CloudFileOptions> name = Text<CloudFileOptions>();
+  name.get = [](const CloudFileOptions& file) { return TomlValue(file.grid); };
+  return name;
+}
+
+TomlMember<CloudFileOptions> GridUp() {
+  return {{.names = kUpAxes.All(), .expected = OneOfQuoted(kUpAxes.All())},
+          [](const TomlValue& value, CloudFileOptions& file) {
+            file.is_y_up = kUpAxes.Find(std::get<std::string>(value)) == UpAxis::kY;
+          },
+          [](const CloudFileOptions& file) {
+            return TomlValue(std::string(kUpAxes.Of(file.is_y_up ? UpAxis::kY : UpAxis::kZ)));
+          }};
+}
+
 template <typename Object>
 TomlField<Object> HeightRow(const char* example) {
   return {"height_m", Number<Object>({kDeepestPlace_m, kHighestPlace_m}), "m",
@@ -300,7 +345,9 @@ const TomlFields<Volume>& VolumeFields() {
 
 const TomlFields<SceneCloud>& CloudFields() {
   using Ranges = CloudRanges;
+  using File = CloudFileOptions;
   constexpr auto kOptions = &SceneCloud::options;
+  constexpr auto kFile = &SceneCloud::file;
   static const TomlFields<SceneCloud> fields{
       "cloud",
       {{"genus", Name(kOptions, &CloudOptions::genus, kCloudGenusNames, OneOfQuoted), "", "",
@@ -310,7 +357,8 @@ const TomlFields<SceneCloud>& CloudFields() {
         "fraction of the sky, seen vertically; of cumulus at most 0.8", "0.3"},
        {"base_height_m", Number(kOptions, &CloudOptions::base_altitude_m, Ranges::kBase_m), "m", "",
         "above the ellipsoid; except for cirrus at most 11000. The default of cumulus and "
-        "stratocumulus is above the ground at the place of the scene",
+        "stratocumulus is above the ground at the place of the scene. Of a grid: see Fields of "
+        "clouds",
         "# 1200.0"},
        {"depth_m", Number(kOptions, &CloudOptions::depth_m, Ranges::kDepth_m), "m", "",
         "from the base to the highest tops", "1500.0"},
@@ -330,10 +378,25 @@ const TomlFields<SceneCloud>& CloudFields() {
        {"period_m", Number(kOptions, &CloudOptions::period_m, Ranges::kPeriod_m), "m", "",
         "clouds repeat after it to the east and to the north; a multiple of 2560", "20480.0"},
        {"grid", Text<SceneCloud>(), "", "",
-        "a field of others (Fields of clouds), instead of cover to seed and period_m",
+        "a file with a field (Fields of clouds), instead of cover to seed and period_m",
         "# \"field.txt\""},
-       {"repeats", Truth(&SceneCloud::repeats), "", "", "a grid repeats beyond its sides",
-        "# true"},
+       {"repeats", OfPart(kFile, Truth(&File::is_periodic)), "", "",
+        "a grid repeats beyond its sides", "# true"},
+       {"spacing_m", ReadApart(OfPart(kFile, GridSpacing())), "m", "required for NRRD and raw",
+        "of the samples of a grid; one value, or [x, y, z]", "# [50.0, 50.0, 25.0]"},
+       {"grid_size", ReadApart(OfPart(kFile, GridSamples())), "", "required for a raw grid",
+        "samples along x, y and z", "# [64, 64, 32]"},
+       {"extinction_per_m",
+        Number(kFile, &File::extinction_per_m, CloudFileRanges::kExtinction_per_m), "1/m", "",
+        "of the density 1 of a grid; the default is 1", "# 0.05"},
+       {"effective_radius_um",
+        Number(kFile, &File::effective_radius_um, CloudFileRanges::kRadius_um), "micrometres", "",
+        "of the droplets or crystals of a grid", "# 10.0"},
+       {"vdb_grid", ReadApart(OfPart(kFile, VdbGridName())), "", "",
+        "the name of a grid in an OpenVDB file; the default is density, or else the first grid of "
+        "floats",
+        "# \"density\""},
+       {"up", OfPart(kFile, GridUp()), "", "", "of OpenVDB, as for a mesh", "# \"z\""},
        {"latitude", Number<SceneCloud>(kLatitudes), "degrees north", "",
         "of the middle of a grid; the default is the place of the scene", "# 46.5"},
        {"longitude", Number<SceneCloud>(kLongitudes), "degrees east", "", "", "# 8.0"}},

@@ -6,6 +6,7 @@
 
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/procedural_mountains/lattice_noise.h"
@@ -17,14 +18,15 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Returns the file that a grid's header names, or the grid itself.
-std::filesystem::path DataOfGrid(const Volume& volume) {
-  if (volume.grid_size) return volume.grid;
+/// Returns an NRRD file, and the file of the data if its header names one.
+std::vector<std::filesystem::path> FilesOfNrrd(const std::filesystem::path& file) {
   try {
-    return ReadNrrdHeader(volume.grid).data_file;
+    const std::filesystem::path data = ReadNrrdHeader(file).data_file;
+    if (data != file) return {file, data};
   } catch (const InputError&) {
-    return volume.grid;  // the error is reported when the volume is read
+    return {file};  // the error is reported when the grid is read
   }
+  return {file};
 }
 
 /// Returns the place of the options on the ellipsoid, if they give one.
@@ -100,9 +102,14 @@ std::uint32_t SeedAt(const Place& place) {
 
 std::vector<std::filesystem::path> FilesOf(const Volume& volume) {
   if (volume.grid.empty()) return {};
-  const std::filesystem::path data = DataOfGrid(volume);
-  if (data == volume.grid) return {data};
-  return {volume.grid, data};
+  if (volume.grid_size) return {volume.grid};
+  return FilesOfNrrd(volume.grid);
+}
+
+std::vector<std::filesystem::path> FilesOf(const SceneCloud& cloud) {
+  if (cloud.grid.empty()) return {};
+  const bool is_nrrd = HasExtension(cloud.grid, ".nrrd") || HasExtension(cloud.grid, ".nhdr");
+  return is_nrrd ? FilesOfNrrd(cloud.grid) : std::vector{cloud.grid};
 }
 
 std::vector<NamedFile> FilesOf(const Scene& scene) {
@@ -120,7 +127,9 @@ std::vector<NamedFile> FilesOf(const Scene& scene) {
   for (const Volume& volume : scene.volumes) {
     for (const std::filesystem::path& file : FilesOf(volume)) add("volume.grid", file);
   }
-  for (const SceneCloud& cloud : scene.clouds) add("cloud.grid", cloud.grid);
+  for (const SceneCloud& cloud : scene.clouds) {
+    for (const std::filesystem::path& file : FilesOf(cloud)) add("cloud.grid", file);
+  }
   return files;
 }
 

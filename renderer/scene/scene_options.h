@@ -22,6 +22,9 @@ struct LandSource;  // renderer/terrain/land_source.h
 /// Returns the files of a volume's grid: none, one, or an NRRD header and the data that it names.
 [[nodiscard]] std::vector<std::filesystem::path> FilesOf(const Volume& volume);
 
+/// Returns the files of a cloud's grid: none, one, or an NRRD header and the data that it names.
+[[nodiscard]] std::vector<std::filesystem::path> FilesOf(const SceneCloud& cloud);
+
 /// Returns the land source of a scene: its elevation model, its mesh or the built-in range.
 [[nodiscard]] LandSource LandSourceOf(const Scene& scene);
 

@@ -243,7 +243,7 @@ Metadata RecordOf(const TomlFields<SceneCloud>& fields, const SceneCloud& cloud,
   for (const auto& [key, value] : ValuesOf(fields, cloud))
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, value);
   if (cloud.is_over_ground) text += ", base over the ground";
-  if (!cloud.grid.empty()) text += ", " + hashes.names_and_hashes.at(cloud.grid);
+  if (!cloud.grid.empty()) text += ", " + hashes.cloud_grids.at(number);
   if (cloud.middle)
     text += fmt::format(" at {}, {}", cloud.middle->latitude_deg, cloud.middle->longitude_deg);
   return {{fmt::format("alpenglow.cloud_{}", number), text}};
@@ -290,11 +290,15 @@ FileHashes HashFilesOf(const Scene& scene, const std::stop_token& stop) {
       known->second =
           fmt::format("{}, hash {}", named.file.filename().string(), HashOfFile(named.file, stop));
   }
-  for (const Volume& volume : scene.volumes) {
-    std::string& grid = hashes.grids.emplace_back();
-    for (const std::filesystem::path& file : FilesOf(volume))
-      grid += hashes.names_and_hashes.at(file) + "; ";
-  }
+  const auto text_of = [&](const std::vector<std::filesystem::path>& files) {
+    std::vector<std::string> texts;
+    for (const std::filesystem::path& file : files)
+      texts.push_back(hashes.names_and_hashes.at(file));
+    return fmt::format("{}", fmt::join(texts, "; "));
+  };
+  for (const Volume& volume : scene.volumes) hashes.grids.push_back(text_of(FilesOf(volume)));
+  for (const SceneCloud& cloud : scene.clouds)
+    hashes.cloud_grids.push_back(text_of(FilesOf(cloud)));
   return hashes;
 }
 

@@ -19,8 +19,9 @@ namespace alpenglow::renderer {
 /// Names of the files of a scene, with hashes of their contents.
 struct FileHashes {
   std::map<std::filesystem::path, std::string> names_and_hashes;
-  std::string models;              // of all elevation models; empty if there are not several
-  std::vector<std::string> grids;  // of each volume
+  std::string models;                    // of all elevation models; empty if there are not several
+  std::vector<std::string> grids;        // of each volume
+  std::vector<std::string> cloud_grids;  // of each layer of clouds; empty without a grid
 };
 /// Reads all files of a scene. Throws InputError when one cannot be read, or when a stop is
 /// requested.

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/clouds/cloud_generator.h"
+#include "renderer/scene/scene_options.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -98,6 +100,49 @@ TEST_F(SceneClouds, ARepeatingGridHasItsPeriod) {
   EXPECT_EQ(
       CloudFieldsOf(Read(std::string(kGridText) + "genus = \"cirrus\"\n"), 0.0).at(0).is_of_ice,
       true);
+}
+
+/// Returns the bytes of 3 x 2 x 2 floats, little endian: 0 to 11, x fastest.
+std::string CountedFloats() {
+  std::string bytes(12 * sizeof(float), '\0');
+  for (int i = 0; i < 12; ++i) {
+    const auto value = static_cast<float>(i);
+    std::memcpy(bytes.data() + static_cast<std::size_t>(i) * sizeof(float), &value, sizeof(float));
+  }
+  return bytes;
+}
+
+TEST_F(SceneClouds, NrrdAndRawLieOverTheirBaseAroundTheirMiddle) {
+  WriteText(folder_ / "x.raw", CountedFloats());
+  WriteText(folder_ / "x.nrrd",
+            "NRRD0004\ntype: float\ndimension: 3\nsizes: 3 2 2\nencoding: raw\n"
+            "endian: little\n\n" +
+                CountedFloats());
+  const std::string keys =
+      "spacing_m = [100, 80, 50]\nbase_height_m = 1500\nextinction_per_m = 0.01\n"
+      "effective_radius_um = 7\n";
+  for (const std::string grid : {"grid = 'x.nrrd'\n", "grid = 'x.raw'\ngrid_size = [3, 2, 2]\n"}) {
+    const CloudField field = FieldAt("[[cloud]]\n" + grid + keys, "2026-06-21T04:00:00Z");
+    EXPECT_EQ(field.lattice().origin_m, glm::dvec3(-100.0, -40.0, 1500.0)) << grid;
+    EXPECT_EQ(field.lattice().size_m(), glm::dvec3(200.0, 80.0, 50.0)) << grid;
+    // Between samples, x, y and z in samples, the value is x + 3 y + 6 z; floats.
+    EXPECT_NEAR(field.Extinction_per_m({0.0, 0.0, 1525.0}), 0.01 * 5.5, 1e-8) << grid;
+    EXPECT_NEAR(field.Extinction_per_m({50.0, 0.0, 1500.0}), 0.01 * 3.0, 1e-8) << grid;
+    EXPECT_EQ(field.Extinction_per_m({0.0, 0.0, 1499.0}), 0.0) << grid;
+    EXPECT_NEAR(field.EffectiveRadius_um({0.0, 0.0, 1525.0}), 7.0, 1e-5) << grid << ": floats";
+  }
+}
+
+TEST_F(SceneClouds, TheDataOfAnNrrdAreAnInput) {
+  WriteText(folder_ / "x.raw", CountedFloats());
+  WriteText(folder_ / "x.nhdr",
+            "NRRD0004\ntype: float\ndimension: 3\nsizes: 3 2 2\nencoding: raw\n"
+            "endian: little\ndata file: x.raw\n");
+  const Scene scene = Read("[[cloud]]\ngrid = 'x.nhdr'\nspacing_m = 100\nbase_height_m = 1500\n");
+  const std::vector<NamedFile> files = FilesOf(scene);
+  ASSERT_EQ(files.size(), 2U);
+  EXPECT_EQ(files[0].file, folder_ / "x.nhdr");
+  EXPECT_EQ(files[1].file, folder_ / "x.raw");
 }
 
 TEST_F(SceneClouds, AFaultyGridIsNamedWithItsKey) {

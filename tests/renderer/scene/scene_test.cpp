@@ -269,9 +269,45 @@ longitude = 138.5
   EXPECT_EQ(scene.clouds[1].name, "s.toml: cloud[1]");
   const SceneCloud& grid = scene.clouds[2];
   EXPECT_EQ(grid.grid, "folder/field.txt");
-  EXPECT_TRUE(grid.repeats);
+  EXPECT_TRUE(grid.file.is_periodic);
   EXPECT_EQ(grid.middle.value().latitude_deg, 35.5);
   EXPECT_EQ(grid.options.wind_m_per_s, glm::dvec2(0.0));
+}
+
+TEST(Scene, GridsOfCloudsHaveTheKeysOfTheirFormat) {
+  const Scene scene = Read(kPlace + R"(
+[[cloud]]
+grid = "field.vdb"
+vdb_grid = "smoke"
+up = "y"
+[[cloud]]
+grid = "field.NHDR"
+spacing_m = 50
+base_height_m = 1500
+[[cloud]]
+grid = "field.raw"
+grid_size = [8, 16, 4]
+spacing_m = [100, 50, 25]
+base_height_m = 2000
+extinction_per_m = 0.05
+effective_radius_um = 7
+)");
+  ASSERT_EQ(scene.clouds.size(), 3U);
+  const CloudFileOptions& vdb = scene.clouds[0].file;
+  EXPECT_EQ(vdb.grid, "smoke");
+  EXPECT_TRUE(vdb.is_y_up);
+  EXPECT_FALSE(vdb.spacing_m) << "the file has its own";
+  EXPECT_EQ(scene.clouds[0].options.base_altitude_m, 0.0);
+  EXPECT_EQ(scene.clouds[1].file.spacing_m.value(), glm::dvec3(50.0));
+  EXPECT_EQ(scene.clouds[1].file.extinction_per_m, 1.0);
+  EXPECT_EQ(scene.clouds[1].file.effective_radius_um, 10.0);
+  EXPECT_FALSE(scene.clouds[1].is_over_ground);
+  const CloudFileOptions& raw = scene.clouds[2].file;
+  EXPECT_EQ(raw.samples.value(), (std::array<int, 3>{8, 16, 4}));
+  EXPECT_EQ(raw.spacing_m.value(), glm::dvec3(100.0, 50.0, 25.0));
+  EXPECT_EQ(scene.clouds[2].options.base_altitude_m, 2000.0);
+  EXPECT_EQ(raw.extinction_per_m, 0.05);
+  EXPECT_EQ(raw.effective_radius_um, 7.0);
 }
 
 TEST(Scene, GroundOfTheFileIsRead) {
@@ -471,7 +507,6 @@ TEST(Scene, CloudsAreRefusedByKey) {
       {kGrid + "latitude = 3\n", "cloud[0].longitude is missing"},
       {kGrid + "longitude = 3\n", "cloud[0].latitude is missing"},
       {kGrid + "cover = 0.3\n", "cloud[0].cover is for clouds without a grid"},
-      {kGrid + "base_height_m = 3\n", "cloud[0].base_height_m is for clouds without a grid"},
       {kGrid + "depth_m = 300\n", "cloud[0].depth_m is for clouds without a grid"},
       {kGrid + "droplets_per_cm3 = 3\n", "cloud[0].droplets_per_cm3 is for clouds without"},
       {kGrid + "ice_mg_per_m3 = 3\n", "cloud[0].ice_mg_per_m3 is for clouds without a grid"},
@@ -480,6 +515,45 @@ TEST(Scene, CloudsAreRefusedByKey) {
       {kGrid + "period_m = 5120\n", "cloud[0].period_m is for clouds without a grid"},
       {kPlace + "[[cloud]]\ngrid = \"\"\n", "cloud[0].grid is empty"},
       {kPlace + "[cloud]\ngenus = \"cumulus\"\n", "must be a list of tables"},
+  });
+}
+
+TEST(Scene, KeysOfCloudGridsAreRefusedByTheirFormat) {
+  const std::string cloud = kPlace + "[[cloud]]\n", vdb = cloud + "grid = \"a.vdb\"\n",
+                    base = "base_height_m = 900\n", nrrd = cloud + "grid = \"a.nrrd\"\n" + base,
+                    raw = cloud + "grid = \"a.raw\"\n" + base,
+                    grid_size = "grid_size = [4, 4, 4]\n", spacing = "spacing_m = 50\n";
+  EXPECT_EQ(FaultOf(nrrd + spacing), "no fault");
+  EXPECT_EQ(FaultOf(raw + spacing + grid_size), "no fault");
+  EXPECT_EQ(FaultOf(vdb + base + spacing), "no fault");
+  ExpectFaults({
+      {kGrid + base,
+       "s.toml:6: cloud[0].base_height_m is for grids of OpenVDB, NRRD, raw; this is text"},
+      {kGrid + spacing, "cloud[0].spacing_m is for grids of OpenVDB, NRRD, raw; this is text"},
+      {kGrid + grid_size, "cloud[0].grid_size is for grids of raw; this is text"},
+      {kGrid + "extinction_per_m = 2\n", "cloud[0].extinction_per_m is for grids of OpenVDB"},
+      {kGrid + "effective_radius_um = 2\n", "cloud[0].effective_radius_um is for grids of"},
+      {kGrid + "vdb_grid = \"a\"\n", "cloud[0].vdb_grid is for grids of OpenVDB; this is text"},
+      {kGrid + "up = \"y\"\n", "cloud[0].up is for grids of OpenVDB; this is text"},
+      {vdb + grid_size, "cloud[0].grid_size is for grids of raw; this is OpenVDB"},
+      {nrrd, "s.toml:4: cloud[0].spacing_m is missing; NRRD needs it"},
+      {nrrd + "spacing_m = [1, 2]\n", "s.toml:7: cloud[0].spacing_m has 2 values"},
+      {nrrd + spacing + grid_size, "s.toml:8: cloud[0].grid_size is for grids of raw"},
+      {nrrd + spacing + "up = \"y\"\n", "cloud[0].up is for grids of OpenVDB; this is NRRD"},
+      {cloud + "grid = \"a.nrrd\"\n" + spacing, "cloud[0].base_height_m is missing; NRRD needs it"},
+      {raw + grid_size, "s.toml:4: cloud[0].spacing_m is missing; raw needs it"},
+      {raw + spacing, "s.toml:4: cloud[0].grid_size is missing; raw needs it"},
+      {raw + spacing + "grid_size = [4, 4]\n", "cloud[0].grid_size has 2 values"},
+      {raw + spacing + "grid_size = [4, 4, 4.5]\n", "counted in whole numbers"},
+      {raw + spacing + grid_size + "vdb_grid = \"a\"\n", "cloud[0].vdb_grid is for grids of"},
+      {cloud + "grid = \"a.bin\"\n",
+       "s.toml:5: cloud[0].grid is \"a.bin\"; its ending must be one of .txt, .dat, .vdb, .nrrd"},
+      {kCumulus + spacing, "s.toml:6: cloud[0].spacing_m is for a grid"},
+      {kCumulus + grid_size, "cloud[0].grid_size is for a grid"},
+      {kCumulus + "extinction_per_m = 2\n", "cloud[0].extinction_per_m is for a grid"},
+      {kCumulus + "effective_radius_um = 2\n", "cloud[0].effective_radius_um is for a grid"},
+      {kCumulus + "vdb_grid = \"a\"\n", "cloud[0].vdb_grid is for a grid"},
+      {kCumulus + "up = \"y\"\n", "cloud[0].up is for a grid"},
   });
 }
 

@@ -674,8 +674,10 @@ const std::vector<ChangedKey>& ChangedVolumes() {
 
 constexpr char kCumulus[] = "[[cloud]]\ngenus = 'cumulus'\n";
 constexpr char kCirrus[] = "[[cloud]]\ngenus = 'cirrus'\n";
-constexpr char kCloudGrid[] = "[[cloud]]\ngrid = 'one'\n";
-constexpr char kMovingGrid[] = "[[cloud]]\ngrid = 'one'\nwind_m_per_s = [3, 0]\n";
+constexpr char kCloudGrid[] = "[[cloud]]\ngrid = 'one.txt'\n";
+constexpr char kVdbCloud[] = "[[cloud]]\ngrid = 'one.vdb'\n";
+constexpr char kRawCloud[] = "[[cloud]]\ngrid = 'one.raw'\nspacing_m = 50\nbase_height_m = 900\n";
+constexpr char kMovingGrid[] = "[[cloud]]\ngrid = 'one.txt'\nwind_m_per_s = [3, 0]\n";
 
 const std::vector<ChangedKey>& ChangedClouds() {
   static const std::vector<ChangedKey> kKeys{
@@ -692,7 +694,14 @@ const std::vector<ChangedKey>& ChangedClouds() {
       {kCumulus, "", "period_m = 10240"},
       {kCirrus, "", "ice_mg_per_m3 = 41"},
       {kCirrus, "", "crystal_radius_um = 36"},
-      {"[[cloud]]\n", "grid = 'one'", "grid = 'two'"},
+      {"[[cloud]]\n", "grid = 'one.txt'", "grid = 'two.txt'"},
+      {kVdbCloud, "", "base_height_m = 1200"},
+      {kVdbCloud, "", "spacing_m = 50"},
+      {kVdbCloud, "", "extinction_per_m = 0.1"},
+      {kVdbCloud, "", "effective_radius_um = 12"},
+      {kVdbCloud, "", "vdb_grid = 'smoke'"},
+      {kVdbCloud, "", "up = 'y'"},
+      {kRawCloud, "grid_size = [2, 2, 3]", "grid_size = [2, 3, 2]"},
       {kCloudGrid, "", "genus = 'cirrus'"},
       {kCloudGrid, "", "repeats = true"},
       {kCloudGrid, "", "latitude = 46.6\nlongitude = 8"},
@@ -729,7 +738,8 @@ std::vector<std::vector<ChangedKey>> AllChanges() {
 }
 
 TEST_F(SeriesRun, ResumeRendersAgainAfterAnyChangeOfTheScene) {
-  for (const char* name : {"one", "two"}) WriteText(folder_ / name, name);
+  for (const char* name : {"one", "two", "one.txt", "two.txt", "one.vdb", "one.raw"})
+    WriteText(folder_ / name, name);
   WriteText(folder_ / "mars.toml", "preset = 'mars'\n");
   const auto settings = [&](const ChangedKey& key, const char* value) {
     const std::string text = WithTimes(std::string(key.section) + value + "\n");
@@ -837,15 +847,19 @@ TEST(Manifest, EveryParameterOfAPhaseFunctionIsRecorded) {
 }
 
 TEST_F(Provenance, FingerprintsFollowTheContentOfEveryFile) {
-  for (const char* name : {"dem", "colour", "ies", "raw", "data", "field"})
+  for (const char* name : {"dem", "colour", "ies", "raw", "data", "field.txt", "floats"})
     WriteText(folder_ / name, "one");
   WriteText(folder_ / "smoke.nhdr",
             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: data\n");
+  WriteText(
+      folder_ / "cloud.nhdr",
+      "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: floats\n");
   const Scene scene =
       SceneFromToml(fmt::format("[place]\nlatitude = 46.5\nlongitude = 8\n"
                                 "[terrain]\ndem = 'dem'\ncolour = 'colour'\n{}ies = 'ies'\n"
                                 "{}grid = 'raw'\ngrid_size = [2, 2, 2]\n{}grid = 'smoke.nhdr'\n"
-                                "[[cloud]]\ngrid = 'field'\n",
+                                "[[cloud]]\ngrid = 'field.txt'\n[[cloud]]\n"
+                                "grid = 'cloud.nhdr'\nspacing_m = 50\nbase_height_m = 900\n",
                                 kPoint, kVolume, kVolume),
                     "scene.toml", folder_);
   std::string before = Fingerprint(RecordOf(scene));
