@@ -45,8 +45,8 @@ TEST(CloudMoments, UniformLightFromAllSidesIsAnEquilibrium) {
       }
     }
   }
-  // Cells that few tracks cross have moments of one track each: the mean over a cell of light that
-  // is 1 everywhere depends on the tracks.
+  // One track crosses every cell at each height in each direction, so that the residual of the
+  // iteration and floats are all that remains.
   EXPECT_LT(most, 0.05 * std::sqrt(4.0 * kPi));
   EXPECT_NEAR(sky.up_at_top + ground.up_at_top, kPi, 1e-3);
   EXPECT_NEAR(sky.down_at_base + ground.down_at_base, kPi, 1e-3);
