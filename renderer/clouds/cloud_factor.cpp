@@ -22,7 +22,7 @@ constexpr double kInfinite_m = std::numeric_limits<double>::infinity();
 constexpr double kLeastCosine = 0.03;
 constexpr double kLeastDepth = 0.1;  // of rays that count
 constexpr double kLeastOfMean = 0.1;
-// The variance of one path relative to the square of its ray's radiance, as measured for cumulus; and
+// The variance of one path relative to the square of its ray's radiance, that of cumulus with side rays; and
 // how far factors are expected from the one that fits all nodes alike, and from their neighbours.
 // Nodes with little light follow others.
 constexpr double kPathVariance = 10.0;
