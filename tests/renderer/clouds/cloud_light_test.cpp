@@ -109,8 +109,9 @@ void ExpectLightOfTracedPaths(std::uint32_t seed, double sun_deg, std::size_t co
   EXPECT_LT(sun.scatter, 0.03) << "the test must be able to fail";
 }
 
+// With 40 rays the root mean square depended on single rays: 0.26 for seed 7, and 0.19 with 160.
 TEST(CloudLight, SunAndSkyAreThoseOfTracedPaths) {
-  const std::size_t rays = tests::ScaledDown<std::size_t>(40, 4);
+  const std::size_t rays = tests::ScaledDown<std::size_t>(80, 4);
   ExpectLightOfTracedPaths(3, 35.0, rays);
   if (!tests::kSanitized) ExpectLightOfTracedPaths(7, 12.0, rays);
 }
