@@ -10,6 +10,9 @@
 // Winds are typical values that this project chose; they grow with height, as winds of middle latitudes
 // usually do.
 //
+// The cover of a field is within 0.05 of that of its options for periods of 5.12 km and more. A field of
+// 2.56 km has so few cumulus that their ages at one time matter: up to 0.06 is missing.
+//
 // Cover is the fraction of the sky, seen vertically, with an optical depth above 0.3; for cirrus
 // above 0.03, where cirrus begins to be visible (Sassen and Cho 1992, J. Appl. Meteor. 31, 1275).
 #pragma once
