@@ -126,7 +126,7 @@ endforeach()
   set(libraries_atmosphere -ldate-tz)
   set(requires_lut OpenEXR libpng)
   set(requires_renderer gdal tinyxml2 zlib)
-  set(libraries_renderer -lembree${embree_VERSION_MAJOR} -lopenvdb)
+  set(libraries_renderer -lembree${embree_VERSION_MAJOR})
   set(below)
   foreach(component ${ALPENGLOW_COMPONENTS})
     install(EXPORT alpenglow_${component} NAMESPACE alpenglow:: FILE alpenglow_${component}.cmake

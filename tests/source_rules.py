@@ -49,7 +49,7 @@ BY_LOCALE = re.compile(
 NAMED_FILE = re.compile(r"(?<![\w/.*<>-])((?:[\w*.-]+/)*[A-Za-z\d*][\w*.-]*\.(?:h|cpp|glsl|md|py|cmake))(?![\w/])")
 ANY_NAME = re.compile(r"(?:NAME|name|[a-z](?:\.[A-Z])?)(?:_[a-z]+)?\.[a-z]+")
 # Headers of other projects, files that the programs write, and names in examples of tests.
-FOREIGN_FILES = {"erfa.h", "ImfEnvmap.h", "openvdb.h", "locale/localeinfo.h", "summary.md", "broken.glsl",
+FOREIGN_FILES = {"erfa.h", "ImfEnvmap.h", "locale/localeinfo.h", "summary.md", "broken.glsl",
                  "ground.frag.glsl"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:alpenglow/)?([^">]+)[">]')
 CASE = re.compile(r"ALPENGLOW_(?:SHARED_CASE\((.*?)grid::|PHASE_VALUE\((.*?)\),$)", re.DOTALL | re.MULTILINE)

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Grids of floats from OpenVDB files (https://www.openvdb.org; Museth 2013, ACM Trans. Graph. 32, 27).
+// Reads grids of floats from OpenVDB files (https://www.openvdb.org; Museth 2013, ACM Trans. Graph. 32,
+// 27), of the file versions 222 to 224: trees of the usual form (Tree_float_5_4_3), also with values
+// of 16 bits, stored as they are or compressed by zlib or Blosc.
+//
+// A file has metadata, then one descriptor per grid that says where the grid is. A grid has metadata,
+// a transform from indices to space, and a tree: a root, nodes of 32^3 and of 16^3 children, and
+// leaves of 8^3 values. The values of nodes come first and those of leaves last. Inactive values
+// may be left out, and are then the background or one or two others that the node names.
 #pragma once
 
 #include <array>
@@ -31,8 +38,8 @@ struct VdbGrid {
 /// Returns a grid of a file.
 /// @param grid_name  empty: the grid "density", or else the first grid of floats.
 /// @param most_values  a box with more values is refused.
-/// Throws InputError "FILE: ..." for files that OpenVDB cannot read, files without a grid of floats or
-/// without active values, and transforms that turn or shear.
+/// Throws InputError "FILE: ..." for files that are damaged or cut off, other versions, files without
+/// a grid of floats or without active values, unknown compressions, and transforms that turn or shear.
 [[nodiscard]] VdbGrid ReadVdb(const std::filesystem::path& file, std::string_view grid_name,
                               double most_values);
 

@@ -3,8 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <openvdb/io/File.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <cstring>
@@ -14,10 +12,15 @@
 
 #include "renderer/layer.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {
 namespace {
+
+std::filesystem::path StoredCloud(const std::string& name) {
+  return std::filesystem::path(tests::kSourceFolder) / "tests" / "data" / "clouds" / name;
+}
 
 template <typename Number>
 std::string CloudBytes(Number number) {
@@ -32,39 +35,47 @@ std::string CloudBytes(const std::vector<float>& values) {
   return bytes;
 }
 
-using VdbFloats = openvdb::FloatGrid;
+std::string VdbText(const std::string& text) {
+  return CloudBytes(static_cast<std::uint32_t>(text.size())) + text;
+}
 
-/// Returns a grid "density" of 8^3 values in steps of 50 units of its file.
-/// @param value_at  a function of the indices.
-template <typename ValueAt>
-VdbFloats::Ptr VdbCube(const ValueAt& value_at) {
-  openvdb::initialize();
-  VdbFloats::Ptr grid = VdbFloats::create();
-  grid->setName("density");
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(50.0));
-  for (int z = 0; z < 8; ++z) {
-    for (int y = 0; y < 8; ++y) {
-      for (int x = 0; x < 8; ++x)
-        grid->getAccessor().setValue({x, y, z}, static_cast<float>(value_at(x, y, z)));
-    }
+std::string VdbVector(double value) {
+  return CloudBytes(value) + CloudBytes(value) + CloudBytes(value);
+}
+
+/// A file with one leaf at the indices 0 to 7, all of whose values are active.
+struct VdbSample {
+  std::uint32_t version = 224;
+  std::string type = "Tree_float_5_4_3";
+  std::string transform = VdbText("UniformScaleMap") + VdbVector(50.0) + VdbVector(50.0) +
+                          VdbVector(0.02) + VdbVector(0.0004) + VdbVector(0.01);
+  std::uint32_t compression = 2;
+  float background = 0.0F;
+  std::vector<float> values = std::vector<float>(512, 0.5F);  // z fastest
+
+  [[nodiscard]] std::string Bytes() const {
+    const std::string none(4, '\0');
+    std::string bytes = std::string(" BDV\0\0\0\0", 8) + CloudBytes(version) +
+                        CloudBytes(std::uint64_t{0}) + '\1' + std::string(36, '-') + none +
+                        CloudBytes(std::int32_t{1}) + VdbText("density") + VdbText(type) +
+                        VdbText("");
+    const std::string grid = CloudBytes(compression) + none + transform + Tree();
+    const auto place = static_cast<std::int64_t>(bytes.size() + 24);
+    const auto end = place + static_cast<std::int64_t>(grid.size());
+    return bytes + CloudBytes(place) + CloudBytes(place) + CloudBytes(end) + grid;
   }
-  return grid;
-}
 
-VdbFloats::Ptr VdbOfEvenDensity() {
-  return VdbCube([](int, int, int) { return 0.5; });
-}
-
-VdbFloats::Ptr VdbOfNumbers() {
-  return VdbCube([](int x, int y, int z) { return 64 * x + 8 * y + z; });
-}
-
-openvdb::GridBase::Ptr VdbOfVelocities() {
-  const openvdb::Vec3SGrid::Ptr grid = openvdb::Vec3SGrid::create();
-  grid->setName("vel");
-  grid->getAccessor().setValue({1, 1, 1}, openvdb::Vec3s(1.0F));
-  return grid;
-}
+ private:
+  [[nodiscard]] std::string Tree() const {
+    const auto node = [](std::size_t mask_bytes) {
+      // The first child, no active value, and no inactive value but the background.
+      return '\1' + std::string(2 * mask_bytes - 1, '\0') + '\0';
+    };
+    return CloudBytes(std::int32_t{1}) + CloudBytes(background) + CloudBytes(std::uint32_t{0}) +
+           CloudBytes(std::uint32_t{1}) + std::string(12, '\0') + node(4096) + node(512) +
+           std::string(128, '\xFF') + '\0' + CloudBytes(values);
+  }
+};
 
 class CloudFile : public TemporaryFolder {
  protected:
@@ -77,57 +88,53 @@ class CloudFile : public TemporaryFolder {
                      const std::string& reason) const {
     tests::ExpectNames(tests::FaultOf([&] { return ReadCloudField(file, options); }), file, reason);
   }
-  [[nodiscard]] std::filesystem::path WrittenVdb(
-      const openvdb::GridPtrVec& grids,
-      std::uint32_t compression = openvdb::io::COMPRESS_ACTIVE_MASK) const {
-    openvdb::io::File file((folder_ / "x.vdb").string());
-    file.setCompression(compression);
-    file.write(grids);
-    return folder_ / "x.vdb";
+  void ExpectVdbRefused(const VdbSample& sample, const std::string& reason,
+                        const CloudFileOptions& options = {}) const {
+    ExpectRefused(Written("x.vdb", sample.Bytes()), options, reason);
   }
 };
 
 const CloudFileOptions kEvery100m{.spacing_m = glm::dvec3(100.0), .extinction_per_m = 0.1};
 
-TEST_F(CloudFile, VdbOfAnyCompressionHasItsValues) {
-  using namespace openvdb::io;  // NOLINT: names of compressions
-  const std::vector<std::uint32_t> compressions{COMPRESS_NONE, COMPRESS_ZIP | COMPRESS_ACTIVE_MASK,
-                                                COMPRESS_BLOSC | COMPRESS_ACTIVE_MASK};
-  for (const std::uint32_t compression : compressions) {
-    for (const bool is_half : {false, true}) {
-      const VdbFloats::Ptr grid = VdbOfNumbers();
-      grid->setSaveFloatAsHalf(is_half);
-      const CloudField field = ReadCloudField(WrittenVdb({grid}, compression));
-      EXPECT_EQ(field.lattice().voxel_m, glm::dvec3(50.0));
-      // One voxel of background surrounds the box.
-      EXPECT_EQ(field.lattice().origin_m, glm::dvec3(-50.0));
-      EXPECT_NEAR(field.Extinction_per_m({50.0, 100.0, 150.0}), 64 + 2 * 8 + 3, 1e-4) << "floats";
-      EXPECT_EQ(field.Extinction_per_m({-50.0, 0.0, 0.0}), 0.0);
+// The files of tests/data/clouds were written by OpenVDB 10.0.1.
+TEST_F(CloudFile, VdbOfOpenVdbHasItsValues) {
+  for (const char* name : {"blosc", "zip", "half"}) {
+    const CloudField field =
+        ReadCloudField(StoredCloud("" + std::string(name) + ".vdb"),
+                       {.origin_m = {0.0, 0.0, 10.0}, .extinction_per_m = 0.01});
+    int inside = 0;
+    for (int z = -6; z <= 6; ++z) {
+      for (int y = -6; y <= 6; ++y) {
+        for (int x = -6; x <= 6; ++x) {
+          const glm::dvec3 place =
+              glm::dvec3(100.0, 200.0, 1010.0) + 25.0 * glm::dvec3(20 + x, 21 + y, 22 + z);
+          const bool is_inside = x * x + y * y + z * z <= 25;
+          const double density = is_inside ? 0.0625 * (1 + (x + 2 * y + 3 * z + 64) % 16) : 0.0;
+          inside += is_inside ? 1 : 0;
+          ASSERT_NEAR(field.Extinction_per_m(place), 0.01 * density, 1e-8)
+              << name << " " << x << " " << y << " " << z << ": values are floats";
+        }
+      }
     }
+    EXPECT_EQ(inside, 515);
   }
 }
 
-TEST_F(CloudFile, VdbIsAtThePlaceOfItsTransform) {
-  const VdbFloats::Ptr grid = VdbOfNumbers();
-  grid->transform().postScale(openvdb::Vec3d(1.0, 2.0, 0.5));
-  grid->transform().postTranslate(openvdb::Vec3d(1000.0, 2000.0, 500.0));
-  const CloudField field =
-      ReadCloudField(WrittenVdb({grid}), {.origin_m = {0.0, 0.0, 10.0}, .extinction_per_m = 0.01});
-  EXPECT_EQ(field.lattice().voxel_m, glm::dvec3(50.0, 100.0, 25.0));
-  EXPECT_NEAR(field.Extinction_per_m({1050.0, 2200.0, 510.0 + 75.0}), 0.01 * (64 + 16 + 3), 1e-6)
-      << "floats";
-}
-
-TEST_F(CloudFile, TilesOfAVdbAreFilled) {
-  const VdbFloats::Ptr grid = VdbFloats::create();
-  grid->fill({{0, 0, 0}, {63, 63, 63}}, 0.25F);
-  const CloudField field = ReadCloudField(WrittenVdb({grid}));
-  EXPECT_NEAR(field.Extinction_per_m({31.0, 40.0, 50.0}), 0.25, 1e-6);
-  EXPECT_EQ(field.lattice().voxels, (std::array<int, 3>{65, 65, 65}));
+TEST_F(CloudFile, VdbWithoutCompressionHasItsValues) {
+  VdbSample sample;
+  for (std::size_t i = 0; i < 512; ++i) sample.values[i] = static_cast<float>(i);
+  const CloudField field = ReadCloudField(Written("x.vdb", sample.Bytes()));
+  EXPECT_EQ(field.lattice().voxel_m, glm::dvec3(50.0));
+  // One voxel of background surrounds the box.
+  EXPECT_EQ(field.lattice().origin_m, glm::dvec3(-50.0));
+  EXPECT_NEAR(field.Extinction_per_m({50.0, 100.0, 150.0}), 64 + 2 * 8 + 3, 1e-4) << "floats";
+  EXPECT_EQ(field.Extinction_per_m({-50.0, 0.0, 0.0}), 0.0);
 }
 
 TEST_F(CloudFile, VdbWithYUpIsTurned) {
-  const CloudField field = ReadCloudField(WrittenVdb({VdbOfNumbers()}), {.is_y_up = true});
+  VdbSample sample;
+  for (std::size_t i = 0; i < 512; ++i) sample.values[i] = static_cast<float>(i);
+  const CloudField field = ReadCloudField(Written("x.vdb", sample.Bytes()), {.is_y_up = true});
   // Index (1, 2, 3): y is the altitude, and z runs to the south.
   EXPECT_NEAR(field.Extinction_per_m({50.0, -150.0, 100.0}), 64 + 2 * 8 + 3, 1e-4) << "floats";
 }
@@ -168,7 +175,8 @@ TEST_F(CloudFile, RefusesUnknownEndingsAndMissingOptions) {
   ExpectRefused(Written("x.raw", "abcd"), {}, "need the numbers and the spacing");
   ExpectRefused(Written("x.nrrd", ""), {}, "need the spacing");
   EXPECT_THAT(tests::FaultOf([&] {
-                return ReadCloudField(WrittenVdb({VdbOfEvenDensity()}), {.extinction_per_m = -1.0});
+                return ReadCloudField(Written("x.vdb", VdbSample{}.Bytes()),
+                                      {.extinction_per_m = -1.0});
               }),
               testing::HasSubstr("the extinction of the density 1 [1/m] is -1"));
 }
@@ -189,9 +197,9 @@ TEST_F(CloudFile, RefusesSizesThatDoNotMatch) {
 
 TEST_F(CloudFile, RefusesDensitiesThatAreNone) {
   for (const float wrong : {-0.5F, std::nanf(""), std::numeric_limits<float>::infinity()}) {
-    const VdbFloats::Ptr grid = VdbOfEvenDensity();
-    grid->getAccessor().setValue({0, 1, 0}, wrong);
-    ExpectRefused(WrittenVdb({grid}), {}, "densities must be finite and not negative");
+    VdbSample sample;
+    sample.values[8] = wrong;
+    ExpectVdbRefused(sample, "densities must be finite and not negative");
     CloudFileOptions options = kEvery100m;
     options.samples = {2, 2, 2};
     std::vector<float> values(8, 1.0F);
@@ -201,32 +209,48 @@ TEST_F(CloudFile, RefusesDensitiesThatAreNone) {
 }
 
 TEST_F(CloudFile, RefusesVdbWithoutAGridOfFloats) {
-  ExpectRefused(WrittenVdb({VdbOfVelocities()}), {},
-                "there is no grid of floats; the file has \"vel\" (vec3s)");
-  const auto both = WrittenVdb({VdbOfVelocities(), VdbOfEvenDensity()});
-  EXPECT_EQ(tests::FaultOf([&] { return ReadCloudField(both); }), "no fault");
-  ExpectRefused(both, {.grid = "vel"}, "there is no grid \"vel\" of floats");
-  ExpectRefused(both, {.grid = "smoke"}, "there is no grid \"smoke\" of floats");
-  ExpectRefused(WrittenVdb({VdbFloats::create()}), {}, "the grid has no active values");
+  ExpectRefused(StoredCloud("vec.vdb"), {},
+                "there is no grid of floats; the file has \"vel\" (Tree_vec3s_5_4_3)");
+  ExpectRefused(StoredCloud("blosc.vdb"), {.grid = "vel"},
+                "grid \"vel\" is Tree_vec3s_5_4_3; it must be Tree_float_5_4_3");
+  ExpectRefused(StoredCloud("blosc.vdb"), {.grid = "smoke"},
+                "there is no grid \"smoke\" of floats");
+  ExpectVdbRefused({.type = "Tree_float_5_5_3"}, "the file has \"density\" (Tree_float_5_5_3)");
 }
 
 TEST_F(CloudFile, RefusesVdbOfOtherForms) {
-  ExpectRefused(Written("x.vdb", "NanoVDB0abcdefgh"), {}, "OpenVDB cannot read it: ");
-  const VdbFloats::Ptr turned = VdbOfEvenDensity();
-  turned->transform().postRotate(0.1, openvdb::math::X_AXIS);
-  ExpectRefused(WrittenVdb({turned}), {}, "the transform turns or shears the grid");
-  const VdbFloats::Ptr wide = VdbOfEvenDensity();
-  wide->getAccessor().setValue({900, 900, 900}, 1.0F);
-  ExpectRefused(WrittenVdb({wide}), {},
-                "a box of 901 x 901 x 901 values; there may be 200000000 at most");
+  ExpectRefused(Written("x.vdb", "NanoVDB0abcdefgh"), {}, "this is not an OpenVDB file");
+  ExpectVdbRefused({.version = 221}, "version 221 are not read; it must be in [222, 224]");
+  ExpectVdbRefused({.compression = 8}, "the compression 8 is not read");
+  ExpectVdbRefused({.transform = VdbText("NonlinearFrustumMap")},
+                   "the transform \"NonlinearFrustumMap\" is not read");
+  ExpectVdbRefused({.transform = VdbText("AffineMap") + std::string(16 * 8, '\x3F')},
+                   "the transform turns or shears the grid");
+  ExpectVdbRefused({.transform = VdbText("ScaleMap") + std::string(15 * 8, '\0')},
+                   "the transform has the scale 0");
 }
 
-TEST_F(CloudFile, RefusesATruncatedVdb) {
-  const std::string whole = ContentOf(WrittenVdb({VdbOfNumbers()}));
-  for (std::size_t length = 0; length < whole.size(); length += 97) {
-    const auto file = Written("x.vdb", whole.substr(0, length));
-    tests::ExpectNames(tests::FaultOf([&] { return ReadCloudField(file); }), file, "");
+TEST_F(CloudFile, RefusesEveryTruncationOfAVdb) {
+  for (const std::string& whole : {VdbSample{}.Bytes(), ContentOf(StoredCloud("blosc.vdb")),
+                                   ContentOf(StoredCloud("zip.vdb"))}) {
+    for (std::size_t length = 0; length < whole.size(); length += length < 400 ? 1 : 97) {
+      const auto file = Written("x.vdb", whole.substr(0, length));
+      tests::ExpectNames(tests::FaultOf([&] { return ReadCloudField(file); }), file, "");
+    }
   }
+}
+
+TEST_F(CloudFile, DamagedVdbIsReadOrRefused) {
+  // Any byte may be wrong; no other error than InputError may leave the reader.
+  const std::string whole = ContentOf(StoredCloud("blosc.vdb"));
+  int refused = 0;
+  for (std::size_t at = 8; at < whole.size(); at += 61) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ '\x5A');
+    const auto file = Written("x.vdb", damaged);
+    refused += tests::FaultOf([&] { return ReadCloudField(file); }) != "no fault" ? 1 : 0;
+  }
+  EXPECT_GT(refused, 10);
 }
 
 }  // namespace
