@@ -28,7 +28,7 @@ std::size_t WordAt(std::string_view text, std::size_t at) {
   return word;
 }
 
-std::string_view Part(std::string_view text, std::size_t begin, std::size_t length) {
+std::string_view BloscPart(std::string_view text, std::size_t begin, std::size_t length) {
   if (begin > text.size() || length > text.size() - begin) FailBlosc();
   return text.substr(begin, length);
 }
@@ -42,7 +42,7 @@ class Lz4Reader {
     while (at_ < packed_.size()) {
       const std::size_t token = Next();
       const std::size_t literals = Length(token >> 4U);
-      out_ += Part(packed_, at_, literals);
+      out_ += BloscPart(packed_, at_, literals);
       at_ += literals;
       if (at_ >= packed_.size()) break;  // the last sequence has no match
       const std::size_t low = Next(), offset = low | Next() << 8U;
@@ -108,7 +108,7 @@ struct BloscBuffer {
     std::string block;
     for (std::size_t stream = 0; stream < streams; ++stream) {
       const std::size_t packed = WordAt(text, at);
-      const std::string_view data = Part(text, at + 4, packed);
+      const std::string_view data = BloscPart(text, at + 4, packed);
       block += packed == length / streams ? std::string(data)
                                           : Lz4Reader(data).Unpacked(length / streams);
       at += 4 + packed;
@@ -129,7 +129,7 @@ std::string UnpackedBlosc(std::string_view packed, std::size_t bytes) {
     throw InputError(
         fmt::format("a Blosc buffer of {} bytes; {} are expected", buffer.bytes, bytes));
   }
-  if ((buffer.flags & kStored) != 0) return std::string(Part(packed, kBloscHeader, bytes));
+  if ((buffer.flags & kStored) != 0) return std::string(BloscPart(packed, kBloscHeader, bytes));
   if (buffer.flags >> 5U != 1U) throw InputError("a Blosc buffer of another codec than LZ4");
   if ((buffer.flags & kBitShuffled) != 0) throw InputError("a Blosc buffer with shuffled bits");
   if (buffer.block_bytes == 0 || buffer.value_bytes == 0) FailBlosc();

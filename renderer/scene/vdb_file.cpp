@@ -108,7 +108,7 @@ std::string StoredBytes(VdbBytes& file, std::size_t bytes, std::uint32_t compres
   const auto packed_bytes = file.Next<std::int64_t>();
   if (packed_bytes <= 0) {
     if (packed_bytes != -static_cast<std::int64_t>(bytes)) {
-      throw InputError(fmt::format("{} bytes of values; {} are expected", -packed_bytes, bytes));
+      throw InputError(fmt::format("values of another size than {} bytes", bytes));
     }
     return std::string(file.Take(bytes));
   }
