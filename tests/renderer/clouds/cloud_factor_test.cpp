@@ -72,7 +72,7 @@ TEST(CloudFactor, BringsTheMeanLightNearThatOfPaths) {
   const FactorCase spheres;
   const CloudFactor factor = FitCloudFactor(spheres.field, spheres.gather, spheres.tracer,
                                             {.rays = tests::ScaledDown<std::size_t>(12000, 1000)});
-  const FactorMeans means = MeansOfRays(spheres, factor, tests::ScaledDown(60000, 2000));
+  const FactorMeans means = MeansOfRays(spheres, factor, tests::ScaledDown(60000, 12000));
   EXPECT_GT(std::abs(means.without - means.traced), 3.0 * means.standard_error)
       << "cells of 160 m are too coarse";
   EXPECT_NEAR(means.with, means.traced, 0.03 * means.traced + 3.0 * means.standard_error);
