@@ -32,7 +32,7 @@ void EachAround(const std::array<int, 3>& place, int reach, const Visit& visit) 
   }
 }
 
-/// What samples of a field say about one cell.
+/// A cell as samples of a field describe it.
 struct CellSamples {
   double extinction_per_m = 0.0;  // mean of those with cloud
   double share = 0.0;             // of samples with cloud

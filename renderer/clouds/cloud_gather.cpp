@@ -32,7 +32,7 @@ CloudHats CloudHatsAt(double depth_to_sun) {
   return {node, std::min(at - static_cast<double>(node), 1.0)};
 }
 
-/// What is known along a ray.
+/// The state of the march along a ray.
 struct CloudGather::March {
   March(const CloudGather& gather, const CloudRay& along, double until_m)
       : ray(along),

@@ -19,7 +19,7 @@ const CloudSurroundings& CheckedSurroundings(const CloudField& field,
 
 }  // namespace
 
-/// What all suns share.
+/// The parts that all suns share.
 struct CloudLight::FieldLight {
   FieldLight(const CloudField& of, const CloudScatterers& by, const CloudSurroundings& surroundings,
              const CloudLightOptions& with)

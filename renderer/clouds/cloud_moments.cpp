@@ -174,7 +174,7 @@ struct TrackRoom {
 
 }  // namespace
 
-/// What light begins from.
+/// The sources from which light begins.
 struct CloudMomentSolver::Source {
   std::vector<float> beam;          // mean irradiance of the scaled beam in full cells; or nothing
   CloudHarmonics beam_harmonics{};  // of the beam's direction of travel

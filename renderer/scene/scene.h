@@ -168,7 +168,7 @@ struct SceneCloud {
   std::string name;            // in messages: "scene.toml: cloud[0]"
   CloudOptions options;        // of a grid: the genus, the wind and the base alone
   std::filesystem::path grid;  // see ReadCloudField; empty: a layer of the genus
-  /// How a grid is read; its origin follows from the base and from `middle`. The base of NRRD and raw
+  /// These options say how a grid is read; its origin follows from the base and from `middle`. The base of NRRD and raw
   /// files is that of their lowest samples, that of OpenVDB is the height of z = 0, and text has none.
   CloudFileOptions file;
   /// The base is a height above the ground at the scene's place, not above the ellipsoid; see

@@ -95,7 +95,7 @@ float FloatOfHalf(std::uint16_t half) {
   return sign * std::ldexp(static_cast<float>(fraction + 1024), exponent - 25);
 }
 
-/// How the values of a grid are stored.
+/// The storage of the values of a grid.
 struct ValueCoding {
   std::uint32_t compression = 0;
   bool is_half = false;
@@ -141,7 +141,7 @@ std::vector<float> StoredFloats(VdbBytes& file, std::size_t count, const ValueCo
   return values;
 }
 
-/// What a node says of its inactive values.
+/// The inactive values of a node.
 enum class InactiveValues : std::uint8_t {
   kBackground,
   kMinusBackground,
@@ -378,7 +378,7 @@ VdbTransform TransformOf(VdbBytes& file) {
   return transform;
 }
 
-/// Where a grid is in the file.
+/// The place of a grid in the file.
 struct VdbDescriptor {
   std::string name, type;
   std::int64_t place = 0, end = 0;

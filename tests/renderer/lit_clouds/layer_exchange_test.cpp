@@ -57,7 +57,7 @@ TEST(LayerExchange, EqualsLightFollowedFromLayerToLayer) {
   }
 }
 
-// What enters the top leaves through the top or is absorbed by layers or ground; rounding.
+// Light that enters the top leaves through the top or is absorbed by layers or ground; rounding.
 TEST(LayerExchange, WhiteLayersOverWhiteGroundReflectEverything) {
   const std::array<CloudLayerFluxes, 2> white{
       {{0.3, 0.4, 0.3, 0.4, 0.6}, {0.2, 0.5, 0.3, 0.3, 0.7}}};
