@@ -22,8 +22,10 @@ constexpr std::size_t kKept = 4;
 glm::dvec3 BeamDirection(const glm::dvec3& to_light) {
   const double lowest = std::sin(kLowestCloudSun_deg * kPi / 180.0);
   if (to_light.z >= lowest) return to_light;
-  const double stretch = std::sqrt(1.0 - lowest * lowest) / std::hypot(to_light.x, to_light.y);
-  return {stretch * to_light.x, stretch * to_light.y, lowest};
+  const double across = std::hypot(to_light.x, to_light.y),
+               level = std::sqrt(1.0 - lowest * lowest);
+  if (across == 0.0) return {level, 0.0, lowest};  // straight below: any azimuth
+  return {level / across * to_light.x, level / across * to_light.y, lowest};
 }
 
 }  // namespace

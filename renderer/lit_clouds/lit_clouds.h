@@ -15,6 +15,7 @@
 //   - the light of clouds on the air around them: light that the air scatters more than once is that
 //     of a clear sky;
 //   - lamps and towns as sources;
+//   - clouds in the mirror of water, which shows the clear sky;
 //   - a beam less than kLowestCloudSun_deg high: strength and colour are those of the lower sun, the
 //     direction is not.
 #pragma once
