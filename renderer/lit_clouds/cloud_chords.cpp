@@ -40,12 +40,21 @@ struct RayOverSphere {
 }  // namespace
 
 glm::dvec3 InFlatFrame(const glm::dvec3& point, double planet_radius_m) {
-  const double across_m = std::hypot(point.x, point.y);
-  const double altitude_m = AltitudeOverSphere(point, planet_radius_m);
-  if (across_m < 1e-6) return {point.x, point.y, altitude_m};
-  const double arc_m = planet_radius_m * std::atan2(across_m, planet_radius_m + point.z);
-  const double stretch = arc_m / across_m;
-  return {stretch * point.x, stretch * point.y, altitude_m};
+  const double from_centre_m = planet_radius_m + point.z;
+  const double across_m2 = point.x * point.x + point.y * point.y;
+  const double square = across_m2 / (from_centre_m * from_centre_m);
+  // R arctan(t) / t by its series. At the bound of t^2 the next term is 6e-12 of the arc.
+  constexpr double kMostOfSeries = 0.005;
+  const auto arc_m = [&] {
+    return planet_radius_m * std::atan2(std::sqrt(across_m2), from_centre_m);
+  };
+  const double stretch =
+      from_centre_m > 0.0 && square < kMostOfSeries
+          ? planet_radius_m / from_centre_m *
+                (1.0 -
+                 square * (1.0 / 3.0 - square * (1.0 / 5.0 - square * (1.0 / 7.0 - square / 9.0))))
+          : arc_m() / std::sqrt(across_m2);
+  return {stretch * point.x, stretch * point.y, AltitudeOverSphere(point, planet_radius_m)};
 }
 
 std::vector<CloudChord> ChordsWithin(const AltitudeRange& range, const glm::dvec3& origin,

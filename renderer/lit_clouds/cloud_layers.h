@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "atmosphere/time_place/time.h"
-#include "renderer/clouds/cloud_light.h"
+#include "renderer/cloud_light/cloud_light.h"
 #include "renderer/layer.h"
 #include "renderer/scene/scene.h"
 #include "renderer/scene/scene_clouds.h"

@@ -11,7 +11,7 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/clouds/cloud_sun_map.h"
+#include "renderer/cloud_light/cloud_sun_map.h"
 #include "renderer/layer.h"
 #include "renderer/visibility/sunlit_path.h"
 

@@ -26,6 +26,23 @@ CloudLayerFluxes FluxesOf(const CloudLight& light) {
 
 }  // namespace
 
+void CloudsOnRay::Add(const CloudScreen& screen) {
+  if (screens.empty() || screen.distance_m > kMostJoined * screens.back().distance_m) {
+    screens.push_back(screen);
+    return;
+  }
+  CloudScreen& near = screens.back();
+  const double taken = 1.0 - static_cast<double>(near.transmittance);
+  const double taken_behind =
+      static_cast<double>(near.transmittance) * (1.0 - static_cast<double>(screen.transmittance));
+  if (taken + taken_behind > 0.0) {
+    near.distance_m =
+        (taken * near.distance_m + taken_behind * screen.distance_m) / (taken + taken_behind);
+  }
+  near.radiance = near.radiance + near.transmittance * screen.radiance;
+  near.transmittance *= screen.transmittance;
+}
+
 float CloudsOnRay::TransmittanceTo(double distance_m) const {
   float left = 1.0F;
   for (const CloudScreen& screen : screens) {
@@ -153,7 +170,7 @@ CloudsOnRay LitClouds::Along(const glm::dvec3& origin, const glm::dvec3& directi
         Layer(part.layer).Radiance({part.chord.origin, part.chord.direction}, part.chord.length_m);
     if (grey.transmittance >= 1.0) continue;
     const double distance_m = part.chord.OnRay(grey.mean_distance_m);
-    clouds.screens.push_back(Screen(part.layer, grey, origin + distance_m * direction, distance_m));
+    clouds.Add(Screen(part.layer, grey, origin + distance_m * direction, distance_m));
     left *= grey.scaled_transmittance;
     unscattered *= grey.transmittance;
     if (left < kNothing) break;

@@ -39,7 +39,7 @@
 
 namespace alpenglow::renderer {
 
-/// Clouds on one chord of a ray, as a screen.
+/// Clouds on one chord of a ray, or on several at nearly the same distance, as a screen.
 struct CloudScreen {
   double distance_m;    // mean distance of the light
   float transmittance;  // of this screen, with the light in the forward peak
@@ -50,6 +50,12 @@ struct CloudScreen {
 struct CloudsOnRay {
   std::vector<CloudScreen> screens;  // in order
   float unscattered = 1.0F;          // transmittance of all for light that is not scattered at all
+
+  /// Adds a screen behind all others. It becomes a part of the last one if their distances differ by
+  /// less than kMostJoined, because the air up to a screen costs as much as the air of a whole ray.
+  /// The air between both is then that of their mean distance, to second order in its optical depth.
+  void Add(const CloudScreen& screen);
+  static constexpr double kMostJoined = 1.2;
 
   /// Returns the transmittance of all screens, with the light in the forward peak.
   [[nodiscard]] float transmittance() const {

@@ -12,9 +12,9 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "renderer/cloud_light/cloud_low_sun.h"
+#include "renderer/cloud_light/cloud_sun_map.h"
 #include "renderer/clouds/cloud_generator.h"
-#include "renderer/clouds/cloud_low_sun.h"
-#include "renderer/clouds/cloud_sun_map.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

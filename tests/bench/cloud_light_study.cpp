@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Measures the fast method of light in clouds (renderer/clouds/cloud_light.h) relative to traced
+// Measures the fast method of light in clouds (renderer/cloud_light/cloud_light.h) relative to traced
 // paths, for six views of one field:
 //   cloud_light_study [GENUS [SEED [SUN_DEG [PERIOD_KM [PATHS [DROPLETS [CELLS_M...]]]]]]]
 // with DROPLETS 0 for the phase function of Henyey and Greenstein (g = 0.85) or 1 for droplets.
@@ -21,10 +21,10 @@
 
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/cloud_light/cloud_light.h"
+#include "renderer/cloud_light/cloud_light_fluxes.h"
+#include "renderer/cloud_light/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
-#include "renderer/clouds/cloud_light.h"
-#include "renderer/clouds/cloud_light_fluxes.h"
-#include "renderer/clouds/droplet_phase.h"
 
 namespace alpenglow::renderer {
 namespace {

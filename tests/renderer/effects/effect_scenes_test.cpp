@@ -115,9 +115,9 @@ TEST_P(SceneEffects, ThePilotPredictsTheChangeByEachEffect) {
   }
 }
 
-const std::vector<const char*> kAllScenes{"noon clear",   "noon haze",     "sunset",
-                                          "twilight",     "from 10 km",    "from space",
-                                          "lamps in fog", "lamps at noon", "valley"};
+const std::vector<const char*> kAllScenes{
+    "noon clear", "noon haze",    "sunset",        "twilight", "from 10 km",
+    "from space", "lamps in fog", "lamps at noon", "valley",   "cumulus"};
 const std::vector<const char*> kDifferentScenes{"twilight", "lamps in fog"};
 INSTANTIATE_TEST_SUITE_P(Of, SceneEffects,
                          testing::ValuesIn(tests::ScaledDown(kAllScenes, kDifferentScenes)),
@@ -202,6 +202,12 @@ TEST_F(SceneNeeds, CloudsOnlyWhereTheSceneHasThem) {
   scene.clouds[0].options = DefaultCloudOptions(CloudGenus::kCirrus);
   scene.clouds[0].options.period_m = kPeriodStep_m;
   EXPECT_EQ(count_present(), 3);
+}
+
+TEST_F(SceneNeeds, CloudsAndTheirShadowsAndLightUnderCumulus) {
+  for (const Effect effect : {Effect::kClouds, Effect::kCloudShadows, Effect::kCloudGlow}) {
+    EXPECT_GT(ChangeBy(effect, "cumulus"), 0.02) << TextOf(effect).name;
+  }
 }
 
 TEST_F(SceneNeeds, NoSkyBetweenTheWallsOfAValley) {

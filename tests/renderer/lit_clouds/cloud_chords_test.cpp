@@ -26,6 +26,17 @@ TEST(CloudChords, FlatFrameKeepsAltitudesAndArcs) {
   EXPECT_NEAR(flat.z, 3000.0, 1e-6);
 }
 
+TEST(CloudChords, FlatFrameIsSeamlessFromTheOriginToTheOtherSide) {
+  // The series gives way to the arctangent at an arc of 450 km.
+  for (const double arc_m : {0.0, 1.0, 1e3, 449e3, 452e3, 5e6, 15e6}) {
+    const double angle = arc_m / kEarth_m, from_centre_m = kEarth_m + 500.0;
+    const glm::dvec3 flat = InFlatFrame(
+        {from_centre_m * std::sin(angle), 0.0, from_centre_m * std::cos(angle) - kEarth_m},
+        kEarth_m);
+    EXPECT_NEAR(flat.x, arc_m, 1e-5);
+  }
+}
+
 TEST(CloudChords, VerticalRayCrossesARangeOnce) {
   const auto chords =
       ChordsWithin({1000.0, 3000.0}, {10.0, 20.0, 5.0}, {0.0, 0.0, 1.0}, kNoEnd, kEarth_m);

@@ -144,5 +144,20 @@ TEST(LitClouds, LightBehindAScreenIsDimmed) {
   EXPECT_EQ(clouds.WeightedDistance_m(), 2000.0F);
 }
 
+TEST(LitClouds, ScreensAtNearlyTheSameDistanceAreOne) {
+  Spectrum half(1);
+  half[0] = 0.5F;
+  CloudsOnRay clouds;
+  clouds.Add({10e3, 0.5F, half});
+  clouds.Add({11e3, 0.6F, half});
+  clouds.Add({16e3, 0.7F, half});
+  ASSERT_EQ(clouds.screens.size(), 2U);
+  EXPECT_NEAR(clouds.screens[0].distance_m, (0.5 * 10e3 + 0.2 * 11e3) / 0.7, 1e-3)
+      << "weighted by the light that each takes away";
+  EXPECT_FLOAT_EQ(clouds.screens[0].transmittance, 0.3F);
+  EXPECT_FLOAT_EQ(clouds.screens[0].radiance[0], 0.5F + 0.5F * 0.5F);
+  EXPECT_EQ(clouds.screens[1].distance_m, 16e3);
+}
+
 }  // namespace
 }  // namespace alpenglow::renderer

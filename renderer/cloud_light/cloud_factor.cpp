@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/cloud_light/cloud_factor.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+using FactorRandom = CloudPathTracer::PathRandom;
+
+constexpr double kInfinite_m = std::numeric_limits<double>::infinity();
+constexpr double kLeastCosine = 0.03;
+constexpr double kLeastDepth = 0.1;  // of rays that count
+constexpr double kLeastOfMean = 0.1;
+// The variance of one path relative to the square of its ray's radiance, that of cumulus with side rays; and
+// how far factors are expected from the one that fits all nodes alike, and from their neighbours.
+// Nodes with little light follow others.
+constexpr double kPathVariance = 10.0;
+constexpr double kNodeScatter = 1.0, kNeighbourScatter = 0.3;
+
+/// A ray with its light by both methods.
+struct FactorRay {
+  CloudRayParts parts;
+  double traced = 0.0;
+};
+
+/// Returns a ray from a random point of the top or base, with a random direction into the field.
+CloudRay RandomRay(const CloudField& field, FactorRandom& random) {
+  const bool is_upward = random.Next() < 0.5;
+  const CloudBox bounds = field.Bounds();
+  const bool is_periodic = field.lattice().is_periodic;
+  const glm::dvec3 low = is_periodic ? field.lattice().origin_m : bounds.low;
+  const glm::dvec3 size = is_periodic ? field.lattice().size_m() : bounds.high - bounds.low;
+  const double x_m = low.x + size.x * random.Next(), y_m = low.y + size.y * random.Next();
+  const double cosine = kLeastCosine + (1.0 - kLeastCosine) * random.Next();
+  const double sine = std::sqrt(1.0 - cosine * cosine), azimuth_rad = 2.0 * kPi * random.Next();
+  return {
+      {x_m, y_m, is_upward ? bounds.low.z : bounds.high.z},
+      {sine * std::cos(azimuth_rad), sine * std::sin(azimuth_rad), is_upward ? cosine : -cosine}};
+}
+
+std::vector<FactorRay> TracedRays(const CloudField& field, const CloudGather& gather,
+                                  const CloudPathTracer& tracer,
+                                  const CloudFactorOptions& options) {
+  std::vector<std::optional<FactorRay>> rays(options.rays);
+  tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t i) {
+    FactorRandom random(options.seed, i / atmosphere::reference::kPathsPerBatch,
+                        i % atmosphere::reference::kPathsPerBatch);
+    const CloudRay ray = RandomRay(field, random);
+    FactorRay made{gather.Along(ray, kInfinite_m)};
+    if (made.parts.transmittance > std::exp(-kLeastDepth)) return;
+    for (int path = 0; path < options.paths_per_ray; ++path) {
+      made.traced += tracer.OnePath(ray, random).sun / options.paths_per_ray;
+    }
+    rays[i] = made;
+  });
+  std::vector<FactorRay> kept;
+  for (const std::optional<FactorRay>& ray : rays) {
+    if (ray) kept.push_back(*ray);
+  }
+  return kept;
+}
+
+/// Sums of least squares for the factors of hats.
+struct FactorEquations {
+  std::vector<double> matrix = std::vector<double>(kCloudFactorNodes * kCloudFactorNodes, 0.0);
+  std::vector<double> right_side = std::vector<double>(kCloudFactorNodes, 0.0);
+
+  void Add(const FactorRay& ray, double weight) {
+    const auto& higher = ray.parts.higher;
+    for (std::size_t i = 0; i < kCloudFactorNodes; ++i) {
+      right_side[i] += weight * higher[i] * (ray.traced - ray.parts.first);
+      for (std::size_t j = 0; j < kCloudFactorNodes; ++j) {
+        matrix[i * kCloudFactorNodes + j] += weight * higher[i] * higher[j];
+      }
+    }
+  }
+  /// Returns the one factor that fits best.
+  [[nodiscard]] double Common() const {
+    double squares = 0.0, products = 0.0;
+    for (const double each : matrix) squares += each;
+    for (const double each : right_side) products += each;
+    return squares > 0.0 ? products / squares : 1.0;
+  }
+};
+
+}  // namespace
+
+CloudFactor FitCloudFactor(const CloudField& field, const CloudGather& gather,
+                           const CloudPathTracer& tracer, const CloudFactorOptions& options) {
+  RequireInRange(static_cast<double>(options.rays), 0.0, 1e7, "rays for the factor of clouds");
+  RequireInRange(options.paths_per_ray, 1.0, 1000.0, "paths per ray for the factor of clouds");
+  const std::vector<FactorRay> rays = TracedRays(field, gather, tracer, options);
+  double mean = 0.0;
+  for (const FactorRay& ray : rays) mean += ray.traced / static_cast<double>(rays.size());
+  if (!(mean > 0.0)) return {};
+  FactorEquations equations;
+  for (const FactorRay& ray : rays) {
+    const double scale = std::max(CloudFactor{}.Sun(ray.parts), kLeastOfMean * mean);
+    equations.Add(ray, 1.0 / (scale * scale));
+  }
+  const double common = equations.Common();
+  const double variance = kPathVariance / options.paths_per_ray;
+  const double ridge = variance / (kNodeScatter * kNodeScatter);
+  const double smooth = variance / (kNeighbourScatter * kNeighbourScatter);
+  for (std::size_t i = 0; i < kCloudFactorNodes; ++i) {
+    equations.matrix[i * (kCloudFactorNodes + 1)] += ridge;
+    equations.right_side[i] += ridge * common;
+    if (i == 0) continue;
+    equations.matrix[i * (kCloudFactorNodes + 1)] += smooth;
+    equations.matrix[(i - 1) * (kCloudFactorNodes + 1)] += smooth;
+    equations.matrix[i * kCloudFactorNodes + i - 1] -= smooth;
+    equations.matrix[(i - 1) * kCloudFactorNodes + i] -= smooth;
+  }
+  const std::vector<double> solved = SolvePositiveDefinite(equations.matrix, equations.right_side);
+  CloudFactor factor;
+  for (std::size_t i = 0; i < kCloudFactorNodes; ++i) {
+    factor.node[i] = std::clamp(solved[i], kLeastCloudFactor, kMostCloudFactor);
+  }
+  return factor;
+}
+
+}  // namespace alpenglow::renderer

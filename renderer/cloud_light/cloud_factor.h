@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// A factor on the light of higher orders, fitted to traced paths.
+//
+// Coarse cells lose light of the second and third order close under sunlit surfaces and have too
+// much of it deeper inside. Both depend mainly on the optical depth tau_s to the sun. A factor
+// k(tau_s), linear between six nodes in log(1 + tau_s), is fitted by least squares to paths of the
+// exact method along random rays that enter through the top and the base. The error of a ray counts
+// relative to its radiance, at least a tenth of the mean. Factors of neighbouring nodes are expected
+// to differ by 0.3, so that noise of the paths does not make them alternate. The fit holds for one
+// field and one sun.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "renderer/cloud_light/cloud_gather.h"
+#include "renderer/cloud_light/cloud_path_tracer.h"
+
+namespace alpenglow::renderer {
+
+struct CloudFactorOptions {
+  std::size_t rays = 20000;  // in [0, 10^7]; 0: the factor is 1 everywhere
+  int paths_per_ray = 2;     // in [1, 1000]
+  std::uint64_t seed = 1;
+};
+
+/// A value at each of the hats of CloudHatsAt().
+struct CloudFactor {
+  std::array<double, kCloudFactorNodes> node{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+
+  /// Returns the light of the sun along a ray.
+  [[nodiscard]] double Sun(const CloudRayParts& parts) const {
+    double sum = parts.first;
+    for (std::size_t i = 0; i < node.size(); ++i) sum += node[i] * parts.higher[i];
+    return sum;
+  }
+
+  bool operator==(const CloudFactor&) const = default;
+};
+
+/// Returns the factor, with as many threads as are free; the result does not depend on their
+/// number. Values are in [kLeastCloudFactor, kMostCloudFactor]. Throws InputError for options out of
+/// range.
+/// @param gather  of the field and sun of the tracer. @param tracer  with black ground.
+[[nodiscard]] CloudFactor FitCloudFactor(const CloudField& field, const CloudGather& gather,
+                                         const CloudPathTracer& tracer,
+                                         const CloudFactorOptions& options = {});
+
+inline constexpr double kLeastCloudFactor = 0.25, kMostCloudFactor = 4.0;
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// The fast method for light in a field of clouds: what a picture needs along a ray.
+//
+// Scattered light has three sources, which are kept apart, because a picture gives each its own
+// colour: the sun, a uniform sky above and a uniform ground below. The radiance along a ray is
+//
+//   L = E sun + L_sky sky + L_ground ground + T L_behind
+//
+// where E is the irradiance across the sun's beam and T the transmittance for what is behind: that
+// of narrow sources (sun, stars, edges of land), or the scaled one of wide ones (sky, haze), which
+// has the light that droplets turn by a few degrees. For droplets that absorb nothing uniform light
+// from all sides is an equilibrium, so that the part of the ground is that of the rest.
+//
+// Light of first collisions and of the forward peak is in closed form, with the extinction of voxels
+// (cloud_gather.h). Light of higher orders comes from moments on cells of 80 m (cloud_moments.h),
+// times a factor that is fitted to traced paths (cloud_factor.h).
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <memory>
+
+#include "renderer/cloud_light/cloud_factor.h"
+#include "renderer/cloud_light/cloud_gather.h"
+#include "renderer/cloud_light/cloud_moments.h"
+#include "renderer/cloud_light/cloud_optics.h"
+#include "renderer/cloud_light/cloud_path_tracer.h"
+#include "renderer/cloud_light/cloud_sun_map.h"
+#include "renderer/clouds/cloud_field.h"
+
+namespace alpenglow::renderer {
+
+struct CloudLightOptions {
+  CloudMomentOptions moments = {};
+  CloudSunMapOptions sun_map = {};
+  CloudFactorOptions factor = {};
+  CloudGatherOptions gather = {};
+};
+
+/// Light that clouds scatter into a ray, and what they leave of the light behind it.
+struct CloudRayLight {
+  double sun = 0.0;     // for unit irradiance across the beam [1/sr]; with the sunlit ground's
+  double sky = 0.0;     // for unit radiance from all directions above; with the ground's
+  double ground = 0.0;  // for a ground that emits unit radiance beside what it reflects
+  double transmittance = 1.0;         // of narrow sources behind
+  double scaled_transmittance = 1.0;  // of wide sources behind
+  /// Distance of the clouds, weighted by the light that they scatter into the ray; 0 if there are
+  /// none.
+  double mean_distance_m = 0.0;
+};
+
+/// Mean irradiances of level ground, with light that goes to and fro between it and clouds.
+struct CloudGroundIrradiance {
+  double direct = 0.0;   // of the sun's beam, for unit irradiance across it
+  double diffuse = 0.0;  // of sunlight from clouds, likewise
+  double sky = 0.0;      // for unit radiance of the sky
+  double ground = 0.0;   // for a ground that emits unit radiance, without its own emission
+};
+
+/// The light of a field under one sun. Immutable; safe to use from many threads. Copies share
+/// their tables. The field must outlive it.
+class CloudLight {
+ public:
+  /// Solves for the light of sun, sky and ground, with as many threads as are free; the result does
+  /// not depend on their number. Throws InputError of CloudSunMap, CloudPathTracer and for options
+  /// out of range.
+  CloudLight(const CloudField& field, const CloudScatterers& scatterers,
+             const CloudSurroundings& surroundings, const CloudLightOptions& options = {});
+
+  /// Returns the light of the same field under another sun. It shares the light of sky and ground.
+  [[nodiscard]] CloudLight WithSun(const glm::dvec3& to_sun) const;
+
+  /// Returns the light along a ray. The ground below reflects its mean irradiance; the ground and
+  /// the sky behind the clouds are not included.
+  /// @param length_m  of the ray, >= 0; may be infinite.
+  [[nodiscard]] CloudRayLight Radiance(
+      const CloudRay& ray, double length_m = std::numeric_limits<double>::infinity()) const;
+
+  /// Returns the transmittance of clouds from a point in clear air or on the ground to the sun.
+  [[nodiscard]] double SunTransmittance(const glm::dvec3& point) const {
+    return sun_map().Transmittance(point);
+  }
+
+  /// Returns the mean irradiances of the ground below a periodic field; below an open one those
+  /// without clouds.
+  [[nodiscard]] const CloudGroundIrradiance& ground_irradiance() const;
+  [[nodiscard]] const CloudField& field() const;
+  [[nodiscard]] const CloudOptics& optics() const;
+  [[nodiscard]] const CloudSunMap& sun_map() const;
+  [[nodiscard]] const CloudFactor& factor() const;
+  /// Returns the solution for the sun.
+  [[nodiscard]] const SolvedCloudMoments& sun_moments() const;
+  /// Returns the solution for the sky, of which that for the ground follows.
+  [[nodiscard]] const SolvedCloudMoments& sky_moments() const;
+  /// Returns the memory of all tables [bytes], without the field.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct FieldLight;
+  struct SunLight;
+  CloudLight(std::shared_ptr<const FieldLight> field_light, const glm::dvec3& to_sun);
+
+  std::shared_ptr<const FieldLight> field_light_;
+  std::shared_ptr<const SunLight> sun_light_;
+};
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/cloud_light/cloud_low_sun.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "renderer/layer.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+constexpr double kHighestLowSun_deg = 10.0;
+// Far away, where only what is left of the light matters, steps are longer.
+constexpr double kStepPerDistance = 0.005, kMostStep = 4.0;
+
+double LowElevation_rad(const glm::dvec3& to_sun) {
+  if (!(std::abs(glm::length(to_sun) - 1.0) <= 1e-6)) {
+    throw InputError("the direction from clouds to the sun must be a unit vector");
+  }
+  const double elevation_rad = std::atan2(to_sun.z, glm::length(glm::dvec2(to_sun)));
+  const double elevation_deg = elevation_rad / kRadiansPerDegree;
+  if (!(elevation_deg >= kLowestCloudLight_deg - 1e-9 &&
+        elevation_deg <= kHighestLowSun_deg + 1e-9)) {
+    throw InputError(
+        fmt::format("the sun over clouds is at {} degrees; its beams are followed from {} to {} "
+                    "degrees",
+                    elevation_deg, kLowestCloudLight_deg, kHighestLowSun_deg));
+  }
+  return elevation_rad;
+}
+
+bool IsLow(const glm::dvec3& to_sun) {
+  return to_sun.z < std::sin(kLowestCloudSun_deg * kRadiansPerDegree);
+}
+
+}  // namespace
+
+CloudLowSun::CloudLowSun(const CloudField& field, const glm::dvec3& to_sun,
+                         const CloudLowSunOptions& options)
+    : tracker_(field, false),
+      low_m_(field.base_altitude_m()),
+      high_m_(field.top_altitude_m()),
+      elevation_rad_(LowElevation_rad(to_sun)),
+      place_m_(options.place_m),
+      per_radius_(1.0 / RequireInRange(options.planet_radius_m, 1e5, 1e9,
+                                       "the radius of the planet under clouds [m]")),
+      step_m_(RequireInRange(options.step_m, 1.0, 100.0, "the step of a beam in clouds [m]")) {
+  azimuth_ = glm::normalize(glm::dvec2(to_sun));
+}
+
+glm::dvec3 CloudLowSun::PointAlong(const glm::dvec3& point, double distance_m) const {
+  return {glm::dvec2(point) + distance_m * azimuth_,
+          point.z + distance_m * (SlopeAt(point) + 0.5 * distance_m * per_radius_)};
+}
+
+CloudLowSun::Interval CloudLowSun::Below(double altitude_m, double slope) const {
+  const double square = slope * slope + 2.0 * per_radius_ * altitude_m;
+  if (square <= 0.0) return {0.0, 0.0};
+  // One root is the quotient of the other by their product, without cancellation.
+  const double sum = -(slope + std::copysign(std::sqrt(square), slope));
+  const double one_m = sum / per_radius_, other_m = -2.0 * altitude_m / sum;
+  return {std::max(0.0, std::min(one_m, other_m)), std::max(0.0, std::max(one_m, other_m))};
+}
+
+double CloudLowSun::OpticalDepth(const glm::dvec3& point) const {
+  double depth = 0.0;
+  EachChord(point, [&](const CloudRay& ray, double length_m) {
+    const double away_m = glm::length(ray.origin - point);
+    const double most_m = std::clamp(kStepPerDistance * away_m, step_m_, kMostStep * step_m_);
+    tracker_.EachSpan(ray, length_m, [&](double begin_m, double end_m, double) {
+      const double steps = std::ceil((end_m - begin_m) / most_m);
+      const double step_m = (end_m - begin_m) / steps;
+      for (double i = 0.0; i < steps && depth < kDeepest; ++i) {
+        depth += step_m * tracker_.Extinction_per_m(ray.At(begin_m + (i + 0.5) * step_m));
+      }
+      return depth < kDeepest;
+    });
+    return depth < kDeepest;
+  });
+  return std::min(depth, kDeepest);
+}
+
+CloudSunDepths::CloudSunDepths(const CloudField& field, const glm::dvec3& to_sun,
+                               const CloudSunMapOptions& map_options,
+                               const CloudLowSunOptions& low_options)
+    : field_(&field), sun_([&]() -> std::variant<CloudSunMap, CloudLowSun> {
+        if (IsLow(to_sun)) return CloudLowSun(field, to_sun, low_options);
+        return CloudSunMap(field, to_sun, map_options);
+      }()) {}
+
+double CloudSunDepths::OpticalDepth(const glm::dvec3& point) const {
+  if (const auto* map = std::get_if<CloudSunMap>(&sun_)) {
+    return OpticalDepthToSun(*field_, *map, point);
+  }
+  return std::get<CloudLowSun>(sun_).OpticalDepth(point);
+}
+
+double CloudSunDepths::Transmittance(const glm::dvec3& point) const {
+  if (const auto* map = std::get_if<CloudSunMap>(&sun_)) return map->Transmittance(point);
+  return std::exp(-std::get<CloudLowSun>(sun_).OpticalDepth(point));
+}
+
+std::size_t CloudSunDepths::bytes() const {
+  const auto* map = std::get_if<CloudSunMap>(&sun_);
+  return map ? map->bytes() : 0;
+}
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// Optical depth from any point to a sun near the horizon, over a round planet.
+//
+// A sun below 3 degrees needs no map: its beams stay in a layer of clouds for tens of kilometres and
+// pass a field many times, so that neighbouring points have little in common. Each beam is followed
+// instead. At the distance s along the ground from a point of altitude z, where the sun stands at the
+// elevation e, the altitude of its beam is
+//
+//   z(s) = z + s tan e + s^2 / (2 R)
+//
+// with the radius R of the planet: the surface falls away below the beam. (The next term is
+// 5 s^4 / (24 R^3) for e = 0, 21 m at 400 km.) A sun below the horizontal is seen by high clouds, and
+// lights them from below: its beams sink out of the layer, and cross it again far away. They are
+// followed up to there in chords of 2 km, which leave the parabola by 0.08 m. Fields repeat in x, y
+// and z of this frame, as if their plane were bent over the planet.
+//
+// The sun is higher by s / R for points nearer to it. The ground does not end a beam.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <variant>
+
+#include "renderer/cloud_light/cloud_sun_map.h"
+#include "renderer/cloud_light/cloud_tracking.h"
+#include "renderer/clouds/cloud_field.h"
+
+namespace alpenglow::renderer {
+
+/// The lowest sun for clouds: clouds at 4 km see it at the horizon of the sea.
+inline constexpr double kLowestCloudLight_deg = -2.1;
+
+struct CloudLowSunOptions {
+  glm::dvec2 place_m{0.0};           // where the sun has the given direction
+  double planet_radius_m = 6.371e6;  // in [1e5, 1e9]; 7/6 of it for rays in refracting air
+  double step_m = 20.0;              // in cloud, in [1, 100]; up to four times as long far away
+};
+
+/// Immutable; safe to use from many threads. The field must outlive it.
+class CloudLowSun {
+ public:
+  /// Throws InputError for options out of range and a sun below kLowestCloudLight_deg or above 10
+  /// degrees.
+  /// @param to_sun  unit vector.
+  CloudLowSun(const CloudField& field, const glm::dvec3& to_sun,
+              const CloudLowSunOptions& options = {});
+
+  /// Returns the optical depth from a point to the sun, at most kDeepest: where it is reached, the
+  /// beam ends. Beams end after kFarthest_m, too, so that the time is bounded.
+  [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const;
+
+  /// Returns an unbiased estimate of the transmittance along the same beam.
+  /// @param random  has Next(), uniform in [0, 1).
+  template <typename Random>
+  [[nodiscard]] double Transmittance(const glm::dvec3& point, Random& random) const;
+
+  /// Returns the point of the beam through a point at a distance along the ground.
+  [[nodiscard]] glm::dvec3 PointAlong(const glm::dvec3& point, double distance_m) const;
+
+  static constexpr double kDeepest = 32.0, kFarthest_m = 4e5;
+
+ private:
+  static constexpr double kChord_m = 2000.0;
+
+  /// Returns the tangent of the sun's elevation at a point.
+  [[nodiscard]] double SlopeAt(const glm::dvec3& point) const {
+    return std::tan(elevation_rad_ +
+                    glm::dot(glm::dvec2(point) - place_m_, azimuth_) * per_radius_);
+  }
+  /// A part of a beam.
+  struct Interval {
+    double begin_m, end_m;
+  };
+  /// Returns where a beam is below an altitude, relative to the point where its slope is given: between
+  /// the roots of a parabola that opens upwards.
+  [[nodiscard]] Interval Below(double altitude_m, double slope) const;
+  /// Calls visit(ray, length_m) for chords of the beam between the altitudes of the field, in order,
+  /// until it returns false.
+  template <typename Visit>
+  void EachChord(const glm::dvec3& point, const Visit& visit) const;
+
+  CloudTracker tracker_;
+  double low_m_, high_m_;  // altitudes of the field's clouds
+  glm::dvec2 azimuth_;     // unit vector to the sun on the ground
+  double elevation_rad_;
+  glm::dvec2 place_m_;
+  double per_radius_, step_m_;
+};
+
+/// Optical depths to a sun of any elevation from kLowestCloudLight_deg on: by a map from
+/// kLowestCloudSun_deg on, and by following beams below. The field must outlive it.
+class CloudSunDepths {
+ public:
+  /// Throws the InputErrors of CloudSunMap and CloudLowSun.
+  CloudSunDepths(const CloudField& field, const glm::dvec3& to_sun,
+                 const CloudSunMapOptions& map_options = {},
+                 const CloudLowSunOptions& low_options = {});
+
+  [[nodiscard]] bool has_map() const { return std::holds_alternative<CloudSunMap>(sun_); }
+  /// Returns the optical depth from a point to the sun: OpticalDepthToSun() or
+  /// CloudLowSun::OpticalDepth().
+  [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const;
+  /// Returns the transmittance for points in clear air and on the ground.
+  [[nodiscard]] double Transmittance(const glm::dvec3& point) const;
+  /// Returns the memory of the map [bytes]; 0 without one.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  const CloudField* field_;
+  std::variant<CloudSunMap, CloudLowSun> sun_;
+};
+
+template <typename Visit>
+void CloudLowSun::EachChord(const glm::dvec3& point, const Visit& visit) const {
+  const double slope = SlopeAt(point);
+  const Interval layer = Below(high_m_ - point.z, slope), gap = Below(low_m_ - point.z, slope);
+  const auto follow = [&](double begin_m, double end_m) {
+    for (double at_m = begin_m; at_m < end_m; at_m += kChord_m) {
+      const glm::dvec3 from = PointAlong(point, at_m);
+      const glm::dvec3 way = PointAlong(point, std::min(at_m + kChord_m, end_m)) - from;
+      const double length_m = glm::length(way);
+      if (length_m > 0.0 && !visit(CloudRay{from, way / length_m}, length_m)) return false;
+    }
+    return true;
+  };
+  const double last_m = std::min(layer.end_m, kFarthest_m);
+  if (gap.begin_m >= gap.end_m) {
+    (void)follow(layer.begin_m, last_m);
+  } else if (follow(layer.begin_m, std::min(gap.begin_m, last_m))) {
+    (void)follow(std::max(gap.end_m, layer.begin_m), last_m);
+  }
+}
+
+template <typename Random>
+double CloudLowSun::Transmittance(const glm::dvec3& point, Random& random) const {
+  double left = 1.0;
+  EachChord(point, [&](const CloudRay& ray, double length_m) {
+    left *= tracker_.Transmittance(ray, length_m, random);
+    return left > 0.0;
+  });
+  return left;
+}
+
+}  // namespace alpenglow::renderer

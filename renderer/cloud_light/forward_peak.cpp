@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/cloud_light/forward_peak.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+// Angles are uniform in their root, which makes them dense in the peak; depths in their logarithm.
+constexpr std::size_t kAngles = 512, kDepths = ForwardPeak::kDepths;
+constexpr double kShallowest = 1e-3;
+// Degree of the series, and the degree of its window exp(-(l / w)^2). The diffraction by crystals is
+// so narrow that its series does not end here, and would ring over all angles without a window. The
+// window rounds off angles below 0.2 degrees.
+constexpr int kSeriesDegree = 1500;
+constexpr double kWindowDegree = 400.0;
+// Within the first angle the phase function has the window too, so that the peak and its removal are
+// equally round; from the second one on it is exact, with halos.
+constexpr double kRoundWithin_deg = 1.0, kExactFrom_deg = 2.0;
+
+double WindowAt(std::size_t degree) {
+  return std::exp(-std::pow(static_cast<double>(degree) / kWindowDegree, 2));
+}
+
+/// Returns the phase function, round near the forward direction.
+/// @param chi  its Legendre coefficients. @param series  (2 l + 1) / (4 pi) P_l.
+double RoundPhase(const PhaseFunction& phase, double angle, const std::vector<double>& chi,
+                  const std::vector<double>& series) {
+  const double exact = Phase(phase, std::cos(angle));
+  const double share =
+      (angle / kRadiansPerDegree - kRoundWithin_deg) / (kExactFrom_deg - kRoundWithin_deg);
+  if (share >= 1.0) return exact;
+  double round = 0.0;
+  for (std::size_t l = 0; l < chi.size(); ++l) round += WindowAt(l) * chi[l] * series[l];
+  return std::lerp(round, exact, std::max(share, 0.0));
+}
+
+double PeakDepthAt(std::size_t i) {
+  return kShallowest *
+         std::pow(ForwardPeak::kDeepest / kShallowest, static_cast<double>(i) / (kDepths - 1));
+}
+
+double PeakAngleAt(std::size_t i) {
+  return kPi * std::pow(static_cast<double>(i) / (kAngles - 1), 2);
+}
+
+/// A place between the nodes of an axis.
+struct PeakPlace {
+  std::size_t node;
+  double share;  // of the next node
+};
+
+PeakPlace PlaceOfAngle(double cos_scattering) {
+  const double angle = std::acos(std::clamp(cos_scattering, -1.0, 1.0));
+  const double at = std::sqrt(angle / kPi) * (kAngles - 1);
+  const auto node = std::min(static_cast<std::size_t>(at), kAngles - 2);
+  return {node, at - static_cast<double>(node)};
+}
+
+PeakPlace PlaceOfDepth(double depth) {
+  constexpr double kDeepest = ForwardPeak::kDeepest;
+  static const double per_depth = (kDepths - 1) / std::log(kDeepest / kShallowest);
+  const double at = per_depth * std::log(std::clamp(depth, kShallowest, kDeepest) / kShallowest);
+  const auto node = std::min(static_cast<std::size_t>(at), kDepths - 2);
+  return {node, at - static_cast<double>(node)};
+}
+
+/// The factors of w_l P_l that are added to p, for all degrees and depths.
+struct PeakFactors {
+  std::vector<double> effective, broadened;  // [depth][degree]
+};
+
+PeakFactors PeakFactorsOf(const std::vector<double>& chi, int degree, double fraction) {
+  PeakFactors factors;
+  for (std::size_t i = 0; i < kDepths; ++i) {
+    const double x = PeakDepthAt(i);
+    for (std::size_t l = 0; l < chi.size(); ++l) {
+      const double a = static_cast<int>(l) <= degree ? 1.0 : chi[l] / fraction;
+      // (e^(-x (1 - a)) - e^(-x)) / x = e^(-x (1 - a)) (1 - e^(-x a)) / x, without cancellation.
+      const double orders = -std::exp(-x * (1.0 - a)) * std::expm1(-x * a) / x;
+      factors.effective.push_back(WindowAt(l) * fraction * (orders - a));
+      factors.broadened.push_back(WindowAt(l) * chi[l] * std::expm1(-x * (1.0 - a)));
+    }
+  }
+  return factors;
+}
+
+}  // namespace
+
+ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
+    : effective_(kAngles * kDepths), broadened_(kAngles * kDepths) {
+  if (degree < 0 || degree > 16) {
+    throw InputError(
+        fmt::format("moments of light in clouds of degree {}; it must be 0 to 16", degree));
+  }
+  const std::vector<double> chi = LegendreCoefficients(phase, kSeriesDegree);
+  fraction_ = chi[static_cast<std::size_t>(degree) + 1];
+  if (!(fraction_ > 0.0 && fraction_ < 1.0)) {
+    throw InputError(
+        fmt::format("a phase function of clouds has no forward peak beyond degree {}", degree));
+  }
+  const PeakFactors factors = PeakFactorsOf(chi, degree, fraction_);
+  tbb::parallel_for(std::size_t{0}, kAngles, [&](std::size_t angle) {
+    const std::vector<double> series = LegendreSeries(kSeriesDegree, std::cos(PeakAngleAt(angle)));
+    const double value = RoundPhase(phase, PeakAngleAt(angle), chi, series);
+    for (std::size_t depth = 0; depth < kDepths; ++depth) {
+      double effective = value, broadened = value;
+      for (std::size_t l = 0; l < chi.size(); ++l) {
+        effective += factors.effective[depth * chi.size() + l] * series[l];
+        broadened += factors.broadened[depth * chi.size() + l] * series[l];
+      }
+      effective_[angle * kDepths + depth] = static_cast<float>(effective / (1.0 - fraction_));
+      broadened_[angle * kDepths + depth] = static_cast<float>(broadened);
+    }
+  });
+}
+
+double ForwardPeak::At(const std::vector<float>& table, double cos_scattering, double depth) {
+  const PeakPlace angle = PlaceOfAngle(cos_scattering), along = PlaceOfDepth(depth);
+  const float* low = &table[angle.node * kDepths + along.node];
+  const float* high = low + kDepths;
+  return std::lerp(
+      std::lerp(static_cast<double>(low[0]), static_cast<double>(low[1]), along.share),
+      std::lerp(static_cast<double>(high[0]), static_cast<double>(high[1]), along.share),
+      angle.share);
+}
+
+ForwardPeak::Angle ForwardPeak::AtAngle(double cos_scattering) const {
+  const PeakPlace angle = PlaceOfAngle(cos_scattering);
+  const float* low = &effective_[angle.node * kDepths];
+  const auto share = static_cast<float>(angle.share);
+  Angle at;
+  for (std::size_t i = 0; i < kDepths; ++i) {
+    at.value_[i] = low[i] + share * (low[i + kDepths] - low[i]);
+  }
+  return at;
+}
+
+double ForwardPeak::Angle::Effective(double depth) const {
+  const PeakPlace along = PlaceOfDepth(depth);
+  return std::lerp(static_cast<double>(value_[along.node]),
+                   static_cast<double>(value_[along.node + 1]), along.share);
+}
+
+}  // namespace alpenglow::renderer
