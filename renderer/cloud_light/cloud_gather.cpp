@@ -10,8 +10,10 @@ namespace {
 
 constexpr double kDeepestNode = 40.0;
 constexpr double kMomentsEvery_m = 20.0;
-// The optical depth to the sun is that of the middle of stretches of this length.
+// The optical depth to the sun is that of the middle of stretches: of this length where a ray enters,
+// and longer where little of their light is left.
 constexpr double kSunEvery_m = 10.0;
+constexpr double kLongestSun_m = 40.0;
 // A share of the depth under the surface is a safe step outside, because noise makes the depth
 // steeper than distance.
 constexpr double kStepOutside = 0.3;
@@ -107,7 +109,8 @@ void CloudGather::Inside::Add(const CloudGather& gather, March& march) const {
   const double scale = optics.extinction_scale();
   const double middle_m = begin_m + 0.5 * length_m;
   if (begin_m >= march.to_sun_until_m) {
-    const double stretch_m = std::max(length_m, kSunEvery_m);
+    const double stretch_m =
+        std::max(length_m, std::min(kSunEvery_m / march.parts.scaled_transmittance, kLongestSun_m));
     march.to_sun_until_m = begin_m + stretch_m;
     march.to_sun =
         OpticalDepthToSun(*gather.field_, *gather.map_, march.At(begin_m + 0.5 * stretch_m));

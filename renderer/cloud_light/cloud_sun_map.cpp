@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
@@ -24,6 +25,8 @@ constexpr double kCellsAlongBeam = 4.0;
 constexpr double kLeastAcross = 0.25;  // cells are at most four times as long on the ground
 constexpr int kFineSteps = 12;
 constexpr double kFirstStep_m = 5.0, kStepGrowth = 1.15;
+// Beams and levels of a block, in each direction. A word of bits has a whole number of blocks.
+constexpr int kBlock = 4;
 
 glm::dvec3 CheckedSun(const glm::dvec3& to_sun) {
   if (!(std::abs(glm::length(to_sun) - 1.0) <= 1e-6)) {
@@ -37,6 +40,25 @@ glm::dvec3 CheckedSun(const glm::dvec3& to_sun) {
                     elevation_deg, kLowestCloudSun_deg));
   }
   return to_sun;
+}
+
+/// Two neighbours on one axis, and the weight of the second.
+struct MapNeighbours {
+  std::array<int, 2> node;
+  float share;
+};
+
+/// Returns the neighbours around a coordinate in units of nodes; no value outside of an open map.
+std::optional<MapNeighbours> NeighboursOf(double at, int count, bool is_periodic) {
+  const double cell = std::floor(at);
+  const auto share = static_cast<float>(at - cell);
+  if (is_periodic) {
+    const double wrapped = cell - count * std::floor(cell / count);
+    const int node = std::min(static_cast<int>(wrapped), count - 1);
+    return MapNeighbours{{node, node + 1 < count ? node + 1 : 0}, share};
+  }
+  if (!(cell >= 0.0 && cell < count - 1)) return std::nullopt;
+  return MapNeighbours{{static_cast<int>(cell), static_cast<int>(cell) + 1}, share};
 }
 
 /// The stored part of the beams of one line of nodes.
@@ -92,7 +114,8 @@ CloudSunMap::CloudSunMap(const CloudField& field, const glm::dvec3& to_sun,
     // Beams whose feet are apart along an axis are nearer to each other by this factor.
     const double across = std::sqrt(std::max(0.0, 1.0 - to_sun[axis] * to_sun[axis]));
     const double cell_m = options.cell_m / std::max(across, kLeastAcross);
-    const double cells = std::max(1.0, std::round(size_m[axis] / cell_m));
+    // Blocks of equal size keep the mean.
+    const double cells = kBlock * std::max(1.0, std::round(size_m[axis] / (kBlock * cell_m)));
     cell_m_[axis] = size_m[axis] / cells;
     nodes_[static_cast<std::size_t>(axis)] = static_cast<int>(cells) + (is_periodic_ ? 0 : 1);
   }
@@ -137,6 +160,9 @@ CloudSunMap::CloudSunMap(const CloudField& field, const glm::dvec3& to_sun,
     value_.insert(value_.end(), line.value.begin(), line.value.end());
     line = {};
   }
+  for (std::size_t axis = 0; axis < 2; ++axis) blocks_[axis] = std::max(1, nodes_[axis] / kBlock);
+  block_.resize(BlockOf((levels_ + kBlock - 1) / kBlock, 0, 0));
+  tbb::parallel_for(0, blocks_[1], [&](int line) { MakeBlocks(line); });
 }
 
 std::size_t CloudSunMap::StoredFrom(std::size_t node, int level) const {
@@ -165,30 +191,77 @@ double CloudSunMap::Transmittance(const glm::dvec3& point) const {
   if (!(level < levels_)) return 1.0;
   const int whole = static_cast<int>(level);
   const auto above = static_cast<float>(level - whole);
-  const glm::dvec2 at = (glm::dvec2(point) - rise_m * slope_ - low_) / cell_m_;
-  std::array<std::array<int, 2>, 2> node{};  // of each axis: two neighbours
-  std::array<float, 2> share{};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const double cell = std::floor(at[static_cast<int>(axis)]);
-    share[axis] = static_cast<float>(at[static_cast<int>(axis)] - cell);
-    const int count = nodes_[axis];
-    if (is_periodic_) {
-      const double wrapped = cell - count * std::floor(cell / count);
-      node[axis][0] = std::min(static_cast<int>(wrapped), count - 1);
-      node[axis][1] = node[axis][0] + 1 < count ? node[axis][0] + 1 : 0;
-    } else {
-      if (!(cell >= 0.0 && cell < count - 1)) return 1.0;
-      node[axis] = {static_cast<int>(cell), static_cast<int>(cell) + 1};
-    }
-  }
-  const auto left = [&](std::size_t u, std::size_t v) {
-    const Ends ends = Between(NodeOf(node[0][u], node[1][v]), whole);
+  const glm::dvec2 foot = FootOf(point);
+  const auto u = NeighboursOf(foot.x, nodes_[0], is_periodic_);
+  const auto v = NeighboursOf(foot.y, nodes_[1], is_periodic_);
+  if (!u || !v) return 1.0;
+  const auto left = [&](std::size_t column, std::size_t line) {
+    const Ends ends = Between(NodeOf(u->node[column], v->node[line]), whole);
     const float depth = ends.below + above * (ends.above - ends.below);
     return depth == 0.0F ? 1.0F : std::exp(-depth);
   };
-  const float south = std::lerp(left(0, 0), left(1, 0), share[0]);
-  const float north = std::lerp(left(0, 1), left(1, 1), share[0]);
-  return static_cast<double>(std::lerp(south, north, share[1]));
+  const float south = std::lerp(left(0, 0), left(1, 0), u->share);
+  const float north = std::lerp(left(0, 1), left(1, 1), u->share);
+  return static_cast<double>(std::lerp(south, north, v->share));
+}
+
+void CloudSunMap::MakeBlocks(int line) {
+  const int levels = (levels_ + kBlock - 1) / kBlock;
+  const auto border = [](int block, int blocks, int nodes) { return block * nodes / blocks; };
+  const int first_line = border(line, blocks_[1], nodes_[1]);
+  const int end_line = border(line + 1, blocks_[1], nodes_[1]);
+  std::vector<float> sum(static_cast<std::size_t>(levels));
+  for (int column = 0; column < blocks_[0]; ++column) {
+    const int first = border(column, blocks_[0], nodes_[0]);
+    const int end = border(column + 1, blocks_[0], nodes_[0]);
+    std::fill(sum.begin(), sum.end(), 0.0F);
+    for (int of_line = first_line; of_line < end_line; ++of_line) {
+      for (int of_column = first; of_column < end; ++of_column) {
+        const std::size_t node = NodeOf(of_column, of_line);
+        std::size_t stored = 0;
+        float left = 1.0F;
+        for (std::size_t level = sum.size(); level-- > 0;) {
+          const std::size_t bit = kBlock * level;
+          const auto bits = has_cloud_[node * words_ + bit / 64] >> (bit % 64) & 0xFU;
+          if (bits != 0) {
+            stored += static_cast<std::size_t>(std::popcount(bits));
+            left = std::exp(-Depth(node, stored));
+          }
+          sum[level] += left;
+        }
+      }
+    }
+    const auto beams = static_cast<float>((end - first) * (end_line - first_line));
+    for (std::size_t level = 0; level < sum.size(); ++level) {
+      block_[BlockOf(static_cast<int>(level), column, line)] =
+          static_cast<std::uint16_t>(65535.0F * (sum[level] / beams) + 0.5F);
+    }
+  }
+}
+
+double CloudSunMap::TransmittanceAround(const glm::dvec3& point) const {
+  const double level = std::max(0.0, (point.z - base_m_) / (kBlock * level_m_));
+  const int levels = (levels_ + kBlock - 1) / kBlock;
+  if (!(level < levels)) return 1.0;
+  const glm::dvec2 foot = FootOf(point);
+  const auto among_blocks = [&](std::size_t axis) {
+    const double per_block = static_cast<double>(nodes_[axis]) / blocks_[axis];
+    const double at = (foot[static_cast<int>(axis)] + 0.5) / per_block - 0.5;
+    return NeighboursOf(at, blocks_[axis], is_periodic_);
+  };
+  const auto u = among_blocks(0), v = among_blocks(1);
+  if (!u || !v) return 1.0;
+  const auto whole = static_cast<int>(level);
+  const auto share = static_cast<float>(level - whole);
+  const auto of_level = [&](int k) {
+    if (k == levels) return 65535.0F;
+    const auto left = [&](std::size_t column, std::size_t line) {
+      return static_cast<float>(block_[BlockOf(k, u->node[column], v->node[line])]);
+    };
+    return std::lerp(std::lerp(left(0, 0), left(1, 0), u->share),
+                     std::lerp(left(0, 1), left(1, 1), u->share), v->share);
+  };
+  return static_cast<double>(std::lerp(of_level(whole), of_level(whole + 1), share)) / 65535.0;
 }
 
 double CloudSunMap::MeanTransmittance() const {
@@ -201,7 +274,7 @@ double CloudSunMap::MeanTransmittance() const {
 
 std::size_t CloudSunMap::bytes() const {
   return has_cloud_.size() * sizeof(std::uint64_t) + first_.size() * sizeof(std::uint32_t) +
-         value_.size() * sizeof(std::uint16_t);
+         (value_.size() + block_.size()) * sizeof(std::uint16_t);
 }
 
 std::uint64_t CloudSunMap::hash() const {

@@ -15,6 +15,10 @@
 // clouds are blurred over cells of 20 m. OpticalDepthToSun() therefore takes twelve steps through the
 // field first, of 5 m times 1.15^n, and the map 145 m ahead. Steps that grow faster reach further,
 // but the noise of their optical depth makes the mean transmittance too large.
+//
+// TransmittanceAround() is for shafts far from the eye: a mean over blocks of about 80 m in all
+// directions, of 16 bits each. It costs a tenth, and has no noise where samples are further apart
+// than the cells of the map.
 #pragma once
 
 #include <array>
@@ -60,6 +64,11 @@ class CloudSunMap {
   [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const {
     return -std::log(Transmittance(point));
   }
+
+  /// Returns the mean transmittance to the sun around a point, over a block of about four beams and
+  /// levels in each direction. Its mean over a plane of a periodic field is that of Transmittance()
+  /// within 1e-3.
+  [[nodiscard]] double TransmittanceAround(const glm::dvec3& point) const;
 
   /// Returns the mean over all nodes of the transmittance of whole beams. For a periodic field this
   /// is the direct transmittance to the ground.
@@ -109,6 +118,18 @@ class CloudSunMap {
            static_cast<std::size_t>(column);
   }
   [[nodiscard]] glm::dvec3 PointAt(int column, int line, double level) const;
+  /// Returns a place in the map: node coordinates along u and v.
+  [[nodiscard]] glm::dvec2 FootOf(const glm::dvec3& point) const {
+    return (glm::dvec2(point) - (point.z - base_m_) * slope_ - low_) / cell_m_;
+  }
+  /// Adds the blocks along u of one line of blocks.
+  void MakeBlocks(int line);
+  [[nodiscard]] std::size_t BlockOf(int level, int column, int line) const {
+    return (static_cast<std::size_t>(level) * static_cast<std::size_t>(blocks_[1]) +
+            static_cast<std::size_t>(line)) *
+               static_cast<std::size_t>(blocks_[0]) +
+           static_cast<std::size_t>(column);
+  }
 
   static constexpr double kDeepest = 64.0;
   static constexpr float kUnit = static_cast<float>(kDeepest / (65535.0 * 65535.0));
@@ -124,6 +145,9 @@ class CloudSunMap {
   std::vector<std::uint64_t> has_cloud_;  // a bit for each pair of neighbouring levels
   std::vector<std::uint32_t> first_;      // of each node in value_
   std::vector<std::uint16_t> value_;      // of each bit that is set, from the highest one down
+  std::array<int, 2> blocks_{};           // along u and v
+  // Mean transmittances of blocks at every kBlock-th level, along u first.
+  std::vector<std::uint16_t> block_;
 };
 
 /// Returns the optical depth from a point to the sun by steps in the field and the map ahead. At

@@ -72,12 +72,17 @@ void VisitLegendre(int count, double v, const Visit& visit) {
 [[nodiscard]] SunlitPiece Clipped(const SunlitPiece& piece, double begin_m, double end_m);
 
 /// Adds the moments of a piece of sunlight that lies within the panel. Eight nodes are exact for
-/// full light; penumbrae are smooth enough for them.
+/// full light, and penumbrae are smooth enough for them; three are enough for a short piece, over
+/// which polynomials turn less than once: their zeros at the ends are 1 / nodes^2 apart. Clouds cut
+/// a ray into a hundred short pieces.
 template <typename Panel>
 void AddMoments(const Panel& panel, const SunlitPiece& piece, int nodes, ShaftNodes& moments) {
-  static const GaussRule& rule = GaussLegendre(8);
+  static const GaussRule& many = GaussLegendre(8);
+  static const GaussRule& few = GaussLegendre(3);
+  constexpr double kShort = 4.0;
   const double from = panel.CoordinateAt(piece.begin_m);
   const double to = panel.CoordinateAt(piece.end_m);
+  const GaussRule& rule = std::abs(to - from) * nodes * nodes < kShort ? few : many;
   const bool full = piece.begin_x >= 1.0 && piece.end_x >= 1.0;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double v = from + (to - from) * rule.node[i];

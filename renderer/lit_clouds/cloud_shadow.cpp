@@ -12,14 +12,23 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr std::size_t kEdgeNodes = 513;
+constexpr std::size_t kEdgeNodes = 1025;
 
-/// Returns SunlightOverEdge at equal steps of x from -1 to 1.
-const std::array<double, kEdgeNodes>& SunlightOfEdges() {
+/// Returns the heights over an edge at which equal steps of sunlight from 0 to 1 pass.
+const std::array<double, kEdgeNodes>& HeightsOverEdge() {
   static const auto kTable = [] {
     std::array<double, kEdgeNodes> table{};
-    for (std::size_t i = 0; i < kEdgeNodes; ++i)
-      table[i] = SunlightOverEdge(2.0 * static_cast<double>(i) / (kEdgeNodes - 1) - 1.0);
+    for (std::size_t i = 0; i < kEdgeNodes; ++i) {
+      const double sunlight = static_cast<double>(i) / (kEdgeNodes - 1);
+      double low = -1.0, high = 1.0;
+      for (int halving = 0; halving < 40; ++halving) {
+        const double middle = 0.5 * (low + high);
+        (SunlightOverEdge(middle) < sunlight ? low : high) = middle;
+      }
+      table[i] = 0.5 * (low + high);
+    }
+    table.front() = -1.0;
+    table.back() = 1.0;
     return table;
   }();
   return kTable;
@@ -33,14 +42,10 @@ double HeightAt(const SunlitPiece& piece, double distance_m) {
 }  // namespace
 
 double EdgeHeightFor(double sunlight) {
-  const auto& table = SunlightOfEdges();
-  if (sunlight <= table.front()) return -1.0;
-  if (sunlight >= table.back()) return 1.0;
-  const auto above = std::upper_bound(table.begin(), table.end(), sunlight);
-  const double low = *std::prev(above);
-  const double share = (sunlight - low) / (*above - low);
-  const auto node = static_cast<double>(above - table.begin() - 1);
-  return 2.0 * (node + share) / (kEdgeNodes - 1) - 1.0;
+  static const auto& heights = HeightsOverEdge();
+  const double at = std::clamp(sunlight, 0.0, 1.0) * (kEdgeNodes - 1);
+  const auto node = std::min(static_cast<std::size_t>(at), kEdgeNodes - 2);
+  return std::lerp(heights[node], heights[node + 1], at - static_cast<double>(node));
 }
 
 CloudShadow::CloudShadow(std::vector<std::shared_ptr<const CloudSunMap>> maps,
@@ -56,6 +61,13 @@ double CloudShadow::Transmittance(const glm::dvec3& point) const {
   return left;
 }
 
+double CloudShadow::TransmittanceAround(const glm::dvec3& point) const {
+  const glm::dvec3 flat = InFlatFrame(point, radius_m_);
+  double left = 1.0;
+  for (const auto& map : maps_) left *= map->TransmittanceAround(flat);
+  return left;
+}
+
 SunlitPath CloudShadow::OnRay(const SunlitPath& path, const glm::dvec3& origin,
                               const glm::dvec3& direction) const {
   constexpr double kEndless = std::numeric_limits<double>::infinity();
@@ -65,8 +77,9 @@ SunlitPath CloudShadow::OnRay(const SunlitPath& path, const glm::dvec3& origin,
   const double begin_m = shaded.front().begin_m, end_m = shaded.back().end_m;
   SunlitPathBuilder builder;
   const auto left_at = [&](double distance_m) {
-    return distance_m > kReach_m ? mean_transmittance_
-                                 : Transmittance(origin + distance_m * direction);
+    if (distance_m > kReach_m) return mean_transmittance_;
+    const glm::dvec3 point = origin + distance_m * direction;
+    return distance_m > kSharpReach_m ? TransmittanceAround(point) : Transmittance(point);
   };
   for (const SunlitPiece& piece : path) {
     const double from_m = std::clamp(begin_m, piece.begin_m, piece.end_m);

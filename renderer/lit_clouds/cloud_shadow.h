@@ -34,15 +34,19 @@ class CloudShadow {
   [[nodiscard]] double Transmittance(const glm::dvec3& point) const;
 
   /// Returns sunlight on a ray behind terrain and clouds. Samples of the shadow are kShortestStep_m
-  /// apart near the origin, and kStepPerDistance of the distance far away; beyond kReach_m the mean
-  /// of the layers holds.
+  /// apart near the origin, and kStepPerDistance of the distance far away; beyond kSharpReach_m they
+  /// are means around points, and beyond kReach_m the mean of the layers holds.
   /// @param path  sunlight behind terrain, within finite distances.
   [[nodiscard]] SunlitPath OnRay(const SunlitPath& path, const glm::dvec3& origin,
                                  const glm::dvec3& direction) const;
 
-  static constexpr double kShortestStep_m = 50.0, kStepPerDistance = 0.02, kReach_m = 120e3;
+  static constexpr double kShortestStep_m = 50.0, kStepPerDistance = 0.02;
+  static constexpr double kSharpReach_m = 2000.0, kReach_m = 120e3;
 
  private:
+  /// Returns the product of the layers' means around a point.
+  [[nodiscard]] double TransmittanceAround(const glm::dvec3& point) const;
+
   std::vector<std::shared_ptr<const CloudSunMap>> maps_;
   double highest_cloud_m_, radius_m_;
   double mean_transmittance_ = 1.0;

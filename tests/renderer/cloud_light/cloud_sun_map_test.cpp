@@ -73,6 +73,31 @@ TEST(CloudSunMap, ShadowsHaveTheMeanTransmittanceOfBeams) {
   }
 }
 
+TEST(CloudSunMap, TransmittanceAroundIsTheMeanOfItsNeighbourhood) {
+  const CloudField field = tests::SphereClouds(0.05);
+  for (const double elevation_deg : {60.0, 35.0}) {
+    const CloudSunMap map(field, SunAt(elevation_deg));
+    double around = 0.0, squares = 0.0;
+    constexpr int kSide = 256;
+    const glm::dvec3 low = field.lattice().origin_m, size = field.lattice().size_m();
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const glm::dvec3 on_ground(low.x + size.x * (i % kSide + 0.5) / kSide,
+                                 low.y + size.y * (i / kSide + 0.5) / kSide, 0.0);
+      const double blurred = map.TransmittanceAround(on_ground);
+      around += blurred / (kSide * kSide);
+      double mean = 0.0;  // over a square of the size of a block
+      for (int k = 0; k < 16; ++k) {
+        const glm::dvec3 beside(20.0 * (k % 4) - 30.0, 20.0 * (k / 4) - 30.0, 0.0);
+        mean += map.Transmittance(on_ground + beside) / 16.0;
+      }
+      squares += (blurred - mean) * (blurred - mean) / (kSide * kSide);
+    }
+    EXPECT_NEAR(around, map.MeanTransmittance(), 1e-3);
+    // Between blocks, the interpolation blurs the mean once more: spheres are 130 to 240 m wide.
+    EXPECT_LT(std::sqrt(squares), 0.08);
+  }
+}
+
 /// Mean and root mean square of errors of the direct transmittance at points weighted by extinction,
 /// over its mean.
 struct SunErrors {
@@ -159,8 +184,9 @@ TEST(CloudSunMap, StoresOnlyPartsOfBeamsWithCloud) {
   const CloudSunMap map(field, {0.0, 0.0, 1.0});
   std::size_t parts = 0;
   map.EachPart([&](const CloudSunMap::BeamPart&) { ++parts; });
-  // Each of 64 x 64 beams has a word of bits and a place, each part two bytes.
-  EXPECT_EQ(map.bytes(), 64U * 64U * 12U + 2U * parts);
+  // Each of 64 x 64 beams has a word of bits and a place, each part two bytes, and so has each of
+  // 16 x 16 x 6 blocks.
+  EXPECT_EQ(map.bytes(), 64U * 64U * 12U + 2U * parts + 2U * 16U * 16U * 6U);
   EXPECT_LT(parts, 64U * 64U * 24U / 6U) << "clouds cover a fifth of the sky and not all levels";
 }
 
@@ -174,8 +200,8 @@ TEST(CloudSunMap, BeamsOfALowSunEndWhereTheyAreOpaque) {
     collided_m2 += part.area_m2 * (std::exp(-part.depth_above) - std::exp(-part.depth_below));
   });
   // The whole depth is 174, of which the upper 37 % are stored, in levels of 20 m. Beams that are
-  // 20 m apart have feet 35 m apart along x.
-  EXPECT_EQ(parts, 11U * 20U * 8U);
+  // 20 m apart have feet 33 m apart along x: a multiple of four of them fits.
+  EXPECT_EQ(parts, 12U * 20U * 8U);
   EXPECT_NEAR(collided_m2, 400.0 * 400.0, 1e-3);
   EXPECT_NEAR(map.OpticalDepth({0.0, 0.0, 0.0}), 64.0, 1e-3) << "floats";
 }
