@@ -18,7 +18,7 @@ namespace alpenglow::lut {
 inline void AddLookOptions(CLI::App& app, DisplayOptions& options,
                            const std::vector<std::string>& curves, const char* curve_help) {
   app.add_option("--white-balance", options.white_balance,
-                 "Light that is shown as white: camera (daylight by day, 4000 K by night), "
+                 "Light that is shown as white: camera (5500 K by day, 4000 K by night), "
                  "daylight, auto (the mean colour of the picture, limited to 3000 to 7000 K) or a "
                  "temperature in kelvins, 1500 to 25000")
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))

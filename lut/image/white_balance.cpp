@@ -137,10 +137,10 @@ double CameraWhite(double metered_ev100) {
   constexpr double kNight_k = 4000.0, kDuskEv100 = 4.0, kNightEv100 = -2.0, kPerMired = 1e6;
   const double share =
       std::clamp((kDuskEv100 - metered_ev100) / (kDuskEv100 - kNightEv100), 0.0, 1.0);
-  if (share == 0.0) return kDaylight_k;
+  if (share == 0.0) return kCameraDaylight_k;
   const double night = share * share * (3.0 - 2.0 * share);
-  return kPerMired /
-         (kPerMired / kDaylight_k + night * (kPerMired / kNight_k - kPerMired / kDaylight_k));
+  return kPerMired / (kPerMired / kCameraDaylight_k +
+                      night * (kPerMired / kNight_k - kPerMired / kCameraDaylight_k));
 }
 
 WhiteBalance Settled(const WhiteBalance& white, const HdrImage& image, Projection projection) {

@@ -11,8 +11,8 @@
 // 6504 K, which leaves colours unchanged. Auto takes the mean colour of the metered pixels as the
 // colour of the light, as far as that is a light between 3000 K and 7000 K.
 //
-// Camera, the default, is the setting of a photographer: daylight by day, and 4000 K under moon and
-// stars. Moonlight and airglow are warmer than sunlight, and 4000 K keeps such images from looking
+// Camera, the default, is the setting of a photographer: photographic daylight (5500 K, D55 of ISO
+// 7589) by day, which shows sunlit clouds and snow as white, and 4000 K under moon and stars. Moonlight and airglow are warmer than sunlight, and 4000 K keeps such images from looking
 // brown. From EV 4 (the end of civil twilight) to EV -2 (a full moon) of the image's meter the
 // temperature changes smoothly, in mireds, from one to the other.
 #pragma once
@@ -43,6 +43,8 @@ struct WhiteBalance {
 
 /// Colour temperature of D65, the white of the display.
 inline constexpr double kDaylight_k = 6504.0;
+/// Colour temperature of a camera's daylight.
+inline constexpr double kCameraDaylight_k = 5500.0;
 
 /// Range of temperatures that users can choose [K].
 inline constexpr double kWarmestWhite_k = 1500.0;
@@ -53,7 +55,7 @@ inline constexpr double kCoolestWhite_k = 25000.0;
 [[nodiscard]] WhiteBalance WhiteBalanceFromText(const std::string& text);
 /// Returns the names that WhiteBalanceFromText parses, without kelvins.
 [[nodiscard]] std::vector<std::string> WhiteBalanceNames();
-/// Returns a name: "daylight (D65)", "auto", "auto, 4310 K, CAT16", "camera, 6504 K, CAT16", "5600
+/// Returns a name: "daylight (D65)", "auto", "auto, 4310 K, CAT16", "camera, 5500 K, CAT16", "5600
 /// K, CAT16".
 [[nodiscard]] std::string NameOf(const WhiteBalance& white);
 

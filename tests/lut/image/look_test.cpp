@@ -253,9 +253,9 @@ TEST(WhiteBalance, AutoIgnoresSunAndLamps) {
   EXPECT_NEAR(*Settled(ask, image, Projection::kCamera).kelvin, without, 1.0);
 }
 
-TEST(WhiteBalance, CameraIsDaylightByDayAnd4000KelvinAtNight) {
-  EXPECT_EQ(CameraWhite(15.0), kDaylight_k);
-  EXPECT_EQ(CameraWhite(4.0), kDaylight_k) << "the end of civil twilight";
+TEST(WhiteBalance, CameraIs5500KelvinByDayAnd4000AtNight) {
+  EXPECT_EQ(CameraWhite(15.0), kCameraDaylight_k);
+  EXPECT_EQ(CameraWhite(4.0), kCameraDaylight_k) << "the end of civil twilight";
   EXPECT_DOUBLE_EQ(CameraWhite(-2.0), 4000.0) << "a full moon";
   EXPECT_DOUBLE_EQ(CameraWhite(-9.0), 4000.0);
   double before = CameraWhite(6.0);
@@ -270,7 +270,7 @@ TEST(WhiteBalance, CameraIsDaylightByDayAnd4000KelvinAtNight) {
   const auto settled = [&](double luminance) {
     return Settled(ask, Uniform({1.0, 1.0, 1.0}, luminance), Projection::kCamera);
   };
-  EXPECT_TRUE(settled(500.0).IsDaylight());
+  EXPECT_EQ(*settled(500.0).kelvin, kCameraDaylight_k);
   EXPECT_NEAR(*settled(1e-3).kelvin, 4000.0, 1e-9);
 }
 
