@@ -343,14 +343,40 @@ RaySamples<float> AerialPerspective::SampleWhole(const ViewRay& ray, const Sunli
   return samples;
 }
 
+// With the light M(d) up to the distance d and the factors f, the sum over stretches of
+// (f_k - 1) (M(d_k) - M(d_(k-1))) is the last (f - 1) M and all f_k - f_(k+1) times M(d_k).
+template <typename Light>
+void AerialPerspective::ChangeDiffuse(const RaySamples<float>& samples, const ViewRay& ray,
+                                      const Nodes& nodes, const Light& light, Spectrum& sum) const {
+  for (std::size_t i = 0; i < nodes.diffuse.size(); ++i) {
+    const DiffuseStretch& stretch = nodes.diffuse[i];
+    const bool is_last = i + 1 == nodes.diffuse.size() || stretch.end_m >= ray.length_m;
+    ViewRay part = ray;
+    part.length_m = stretch.end_m;
+    const Spectrum along = is_last ? light(samples) : light(Sample(part, nullptr, nodes).samples);
+    for (std::size_t band = 0; band < sum.size(); ++band) {
+      const float next = is_last ? 1.0F : nodes.diffuse[i + 1].factor[band];
+      sum[band] += (stretch.factor[band] - next) * along[band];
+    }
+    if (is_last) return;
+  }
+}
+
 PolarisedLight AerialPerspective::Polarised(const RaySamples<float>& samples, const ViewRay& ray,
                                             const ScatteredOnce<float>& once,
-                                            bool higher_orders) const {
+                                            const Nodes& nodes) const {
   PolarisedLight light{Spectrum(air_.bands()), Spectrum(air_.bands())};
   if (!air_.medium().polarised) return light;
   light = PolarisedOnce(air_.medium(), once, ray);
-  if (!higher_orders) return light;
-  const PolarisedLight more = multiple_scattering_.PolarisationAlong(samples, ray.nu);
+  if (!nodes.higher_orders) return light;
+  const auto along = [&](const RaySamples<float>& of) {
+    return multiple_scattering_.PolarisationAlong(of, ray.nu);
+  };
+  PolarisedLight more = along(samples);
+  ChangeDiffuse(
+      samples, ray, nodes, [&](const auto& of) { return along(of).q; }, more.q);
+  ChangeDiffuse(
+      samples, ray, nodes, [&](const auto& of) { return along(of).u; }, more.u);
   for (std::size_t band = 0; band < air_.bands(); ++band) {
     light.q[band] += more.q[band];
     light.u[band] += more.u[band];
@@ -364,10 +390,18 @@ AirAlongRay AerialPerspective::Sum(const SampledLight& light, const ViewRay& ray
   const auto& [samples, once] = light;
   const double nu_seen = nodes.nu_seen.value_or(ray.nu);
   const auto direct = air_.Inscatter(once, nu_seen);
-  const auto multiple_scattering =
+  auto multiple_scattering =
       nodes.higher_orders
           ? multiple_scattering_.InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpaque)
           : Spectrum(air_.bands());
+  if (nodes.higher_orders) {
+    ChangeDiffuse(
+        samples, ray, nodes,
+        [&](const RaySamples<float>& of) {
+          return multiple_scattering_.InscatterByMoments(of, ray.nu);
+        },
+        multiple_scattering);
+  }
   AirAlongRay air{Spectrum(air_.bands()), Spectrum(air_.bands())};
   const std::size_t last = samples.count - 1;
   for (std::size_t band = 0; band < air_.bands(); ++band) {
@@ -377,7 +411,7 @@ AirAlongRay AerialPerspective::Sum(const SampledLight& light, const ViewRay& ray
         {samples.view_rayleigh[last], samples.view_mie[last], samples.view_ozone[last]});
     air.transmittance[band] = std::exp(-std::max(depth, 0.0F));
   }
-  if (nodes.polarised) air.polarised = Polarised(samples, ray, once, nodes.higher_orders);
+  if (nodes.polarised) air.polarised = Polarised(samples, ray, once, nodes);
   return air;
 }
 

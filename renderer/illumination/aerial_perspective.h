@@ -157,6 +157,13 @@ class SegmentAir {
   float rayleigh_height_km_, mie_height_km_;
 };
 
+/// A stretch of a ray in which air gets other diffuse light than under a clear sky, for example below
+/// a layer of clouds.
+struct DiffuseStretch {
+  double end_m;  // on the ray; the first stretch begins at the eye, others at the end of the last
+  Spectrum factor;  // of the light that air scatters more than once, >= 0
+};
+
 /// Light and transmittance of the air along a ray, per unit solar irradiance.
 struct AirAlongRay {
   Spectrum inscatter;      // [1/sr], all orders
@@ -184,6 +191,9 @@ class AerialPerspective {
     /// Cosine between the ray and the visible direction of the sun, the centre of the aureole;
     /// empty: the visible sun is in the direction from which its rays light the air, ViewRay::nu.
     std::optional<double> nu_seen = std::nullopt;
+    /// Diffuse light by stretch, in order; the last one ends the ray or lies beyond. Empty: that of a
+    /// clear sky. Light in the aureole, which aerosol turns by a few degrees, does not change.
+    std::span<const DiffuseStretch> diffuse = {};
   };
 
   /// Returns the air along a ray in unbroken sunlight.
@@ -216,7 +226,12 @@ class AerialPerspective {
                                 const Nodes& nodes) const;
   [[nodiscard]] PolarisedLight Polarised(const RaySamples<float>& samples, const ViewRay& ray,
                                          const ScatteredOnce<float>& once,
-                                         bool higher_orders) const;
+                                         const Nodes& nodes) const;
+  /// Adds what Nodes::diffuse changes. @param light  returns a part of the light of higher orders
+  ///     along sampled rays.
+  template <typename Light>
+  void ChangeDiffuse(const RaySamples<float>& samples, const ViewRay& ray, const Nodes& nodes,
+                     const Light& light, Spectrum& sum) const;
 
   const SingleScattering<float>& air_;
   const MultipleScattering& multiple_scattering_;

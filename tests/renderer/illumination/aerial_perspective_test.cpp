@@ -230,6 +230,40 @@ TEST(AerialPerspective, FullSunlightIsTheSameAsALitPath) {
 }
 
 // Hard cases 14, 39.
+/// Returns a stretch that ends at a distance, with one factor in all bands.
+DiffuseStretch StretchTo(double end_m, float factor, std::size_t bands) {
+  DiffuseStretch stretch{end_m, Spectrum(bands)};
+  std::ranges::fill(stretch.factor.values(), factor);
+  return stretch;
+}
+
+TEST(AerialPerspective, DiffuseLightChangesByStretch) {
+  const Air air(WithOpticalDepth(0.1));
+  ViewRay ray{1000.0, 0.02, 0.5, 0.3};
+  ray.length_m = 60e3;
+  ViewRay part = ray;
+  part.length_m = 20e3;
+  const std::size_t bands = air.single_scattering.bands();
+  const AerialPerspective::Nodes clear{.sky = 12};
+  const auto moments = [&](const ViewRay& along) {
+    return air.multiple_scattering.InscatterByMoments(
+        air.aerial.Sample(along, nullptr, clear).samples, along.nu);
+  };
+  const auto changed = [&](const std::vector<DiffuseStretch>& stretches) {
+    return air.aerial.Along(ray, {.sky = 12, .diffuse = stretches}).inscatter;
+  };
+  const Spectrum same = air.aerial.Along(ray, clear).inscatter;
+  const Spectrum near = changed({StretchTo(20e3, 3.0F, bands), StretchTo(1e9, 1.0F, bands)});
+  const Spectrum far = changed({StretchTo(20e3, 1.0F, bands), StretchTo(1e9, 3.0F, bands)});
+  const Spectrum twice = changed({StretchTo(20e3, 3.0F, bands), StretchTo(1e9, 3.0F, bands)});
+  for (std::size_t band = 0; band < bands; ++band) {
+    const float rounding = 1e-5F * same[band];
+    EXPECT_NEAR(near[band] - same[band], 2.0F * moments(part)[band], rounding);
+    EXPECT_NEAR(twice[band] - same[band], 2.0F * moments(ray)[band], rounding);
+    EXPECT_NEAR(near[band] + far[band], same[band] + twice[band], rounding);
+  }
+}
+
 TEST(AerialPerspective, LightGrowsFromZeroWithTheDistance) {
   const Air air(MediumPreset("earth"));
   ViewRay ray{1500.0, 0.02, 0.1, 0.9, 0.0};
