@@ -36,7 +36,8 @@ struct CloudGather::March {
   March(const CloudGather& gather, const CloudRay& along, double until_m)
       : ray(along),
         end_m(until_m),
-        peak(gather.optics_->peak().AtAngle(glm::dot(along.direction, gather.map_->to_sun()))),
+        peak(gather.optics_->peak().AtAngle(
+            glm::dot(along.direction, gather.to_sun_->ToSunAt(along.origin)))),
         factors(gather.optics_->SourceFactors(-along.direction)) {}
 
   [[nodiscard]] glm::dvec3 At(double distance_m) const {
@@ -83,12 +84,13 @@ CloudRayParts CloudGather::March::Finished(bool has_equilibrium) const {
   return whole;
 }
 
-CloudGather::CloudGather(const CloudField& field, const CloudOptics& optics, const CloudSunMap& map,
-                         const CloudMoments& sun, const CloudMoments& sky,
-                         const CloudMoments* ground, const CloudGatherOptions& options)
+CloudGather::CloudGather(const CloudField& field, const CloudOptics& optics,
+                         const CloudSunDepths& to_sun, const CloudMoments& sun,
+                         const CloudMoments& sky, const CloudMoments* ground,
+                         const CloudGatherOptions& options)
     : field_(&field),
       optics_(&optics),
-      map_(&map),
+      to_sun_(&to_sun),
       sun_(&sun),
       sky_(&sky),
       ground_(ground),
@@ -112,8 +114,7 @@ void CloudGather::Inside::Add(const CloudGather& gather, March& march) const {
     const double stretch_m =
         std::max(length_m, std::min(kSunEvery_m / march.parts.scaled_transmittance, kLongestSun_m));
     march.to_sun_until_m = begin_m + stretch_m;
-    march.to_sun =
-        OpticalDepthToSun(*gather.field_, *gather.map_, march.At(begin_m + 0.5 * stretch_m));
+    march.to_sun = gather.to_sun_->OpticalDepth(march.At(begin_m + 0.5 * stretch_m));
   }
   const double to_sun = march.to_sun;
   if (middle_m - march.moments_at_m > kMomentsEvery_m) {

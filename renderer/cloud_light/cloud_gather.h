@@ -17,9 +17,9 @@
 #include <array>
 #include <cstddef>
 
+#include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/cloud_light/cloud_moments.h"
 #include "renderer/cloud_light/cloud_optics.h"
-#include "renderer/cloud_light/cloud_sun_map.h"
 #include "renderer/cloud_light/cloud_tracking.h"
 #include "renderer/clouds/cloud_field.h"
 
@@ -58,8 +58,8 @@ struct CloudRayParts {
 /// many threads.
 class CloudGather {
  public:
-  /// @param map, sun  of one sun. @param ground  null for droplets that absorb nothing.
-  CloudGather(const CloudField& field, const CloudOptics& optics, const CloudSunMap& map,
+  /// @param to_sun, sun  of one sun. @param ground  null for droplets that absorb nothing.
+  CloudGather(const CloudField& field, const CloudOptics& optics, const CloudSunDepths& to_sun,
               const CloudMoments& sun, const CloudMoments& sky, const CloudMoments* ground,
               const CloudGatherOptions& options = {});
 
@@ -81,7 +81,7 @@ class CloudGather {
 
   const CloudField* field_;
   const CloudOptics* optics_;
-  const CloudSunMap* map_;
+  const CloudSunDepths* to_sun_;
   const CloudMoments* sun_;
   const CloudMoments* sky_;
   const CloudMoments* ground_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/cloud_light/cloud_light.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -51,18 +52,19 @@ struct CloudLight::FieldLight {
 
 struct CloudLight::SunLight {
   SunLight(const FieldLight& light, const glm::dvec3& to_sun)
-      : map(*light.field, to_sun, light.options.sun_map),
-        moments(light.solver.Sun(map)),
-        gather(*light.field, *light.optics, map, moments.moments, light.sky.moments,
+      : depths(*light.field, to_sun, light.options.sun_map, light.options.low_sun),
+        moments(light.solver.Sun(depths)),
+        gather(*light.field, *light.optics, depths, moments.moments, light.sky.moments,
                light.ground ? &light.ground->moments : nullptr, light.options.gather) {
     if (light.options.factor.rays > 0) {
-      const CloudPathTracer tracer(*light.field, light.scatterers, {to_sun},
+      const CloudPathTracer tracer(*light.field, light.scatterers,
+                                   {.to_sun = to_sun, .low_sun = depths.low_sun()},
                                    light.options.gather.uses_detail);
       factor = FitCloudFactor(*light.field, gather, tracer, light.options.factor);
     }
     const bool is_periodic = light.field->lattice().is_periodic;
     const double repeated = 1.0 / (1.0 - light.ground_albedo * light.ReturnedToGround());
-    irradiance.direct = to_sun.z * (is_periodic ? map.MeanTransmittance() : 1.0);
+    irradiance.direct = std::max(to_sun.z, 0.0) * (is_periodic ? depths.MeanTransmittance() : 1.0);
     const double sun = irradiance.direct + (is_periodic ? moments.down_at_base : 0.0);
     irradiance.diffuse = repeated * sun - irradiance.direct;
     irradiance.sky = repeated * (is_periodic ? light.sky.down_at_base : kPi);
@@ -71,9 +73,9 @@ struct CloudLight::SunLight {
   SunLight(const SunLight&) = delete;
   SunLight& operator=(const SunLight&) = delete;
 
-  CloudSunMap map;
+  CloudSunDepths depths;
   SolvedCloudMoments moments;
-  CloudGather gather;  // refers to map and moments
+  CloudGather gather;  // refers to depths and moments
   CloudFactor factor;
   CloudGroundIrradiance irradiance;
 };
@@ -109,14 +111,14 @@ const CloudGroundIrradiance& CloudLight::ground_irradiance() const {
 }
 const CloudField& CloudLight::field() const { return *field_light_->field; }
 const CloudOptics& CloudLight::optics() const { return *field_light_->optics; }
-const CloudSunMap& CloudLight::sun_map() const { return sun_light_->map; }
+const CloudSunDepths& CloudLight::sun() const { return sun_light_->depths; }
 const CloudFactor& CloudLight::factor() const { return sun_light_->factor; }
 const SolvedCloudMoments& CloudLight::sun_moments() const { return sun_light_->moments; }
 const SolvedCloudMoments& CloudLight::sky_moments() const { return field_light_->sky; }
 
 std::size_t CloudLight::bytes() const {
   const std::size_t ground = field_light_->ground ? field_light_->ground->moments.bytes() : 0;
-  return sun_light_->map.bytes() + sun_light_->moments.moments.bytes() +
+  return sun_light_->depths.bytes() + sun_light_->moments.moments.bytes() +
          field_light_->sky.moments.bytes() + ground + field_light_->solver.bytes();
 }
 

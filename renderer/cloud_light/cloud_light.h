@@ -23,10 +23,10 @@
 
 #include "renderer/cloud_light/cloud_factor.h"
 #include "renderer/cloud_light/cloud_gather.h"
+#include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/cloud_light/cloud_moments.h"
 #include "renderer/cloud_light/cloud_optics.h"
 #include "renderer/cloud_light/cloud_path_tracer.h"
-#include "renderer/cloud_light/cloud_sun_map.h"
 #include "renderer/clouds/cloud_field.h"
 
 namespace alpenglow::renderer {
@@ -34,6 +34,7 @@ namespace alpenglow::renderer {
 struct CloudLightOptions {
   CloudMomentOptions moments = {};
   CloudSunMapOptions sun_map = {};
+  CloudLowSunOptions low_sun = {};
   CloudFactorOptions factor = {};
   CloudGatherOptions gather = {};
 };
@@ -63,7 +64,7 @@ struct CloudGroundIrradiance {
 class CloudLight {
  public:
   /// Solves for the light of sun, sky and ground, with as many threads as are free; the result does
-  /// not depend on their number. Throws InputError of CloudSunMap, CloudPathTracer and for options
+  /// not depend on their number. Throws InputError of CloudSunDepths, CloudPathTracer and for options
   /// out of range.
   CloudLight(const CloudField& field, const CloudScatterers& scatterers,
              const CloudSurroundings& surroundings, const CloudLightOptions& options = {});
@@ -79,7 +80,7 @@ class CloudLight {
 
   /// Returns the transmittance of clouds from a point in clear air or on the ground to the sun.
   [[nodiscard]] double SunTransmittance(const glm::dvec3& point) const {
-    return sun_map().Transmittance(point);
+    return sun().Transmittance(point);
   }
 
   /// Returns the mean irradiances of the ground below a periodic field; below an open one those
@@ -87,7 +88,7 @@ class CloudLight {
   [[nodiscard]] const CloudGroundIrradiance& ground_irradiance() const;
   [[nodiscard]] const CloudField& field() const;
   [[nodiscard]] const CloudOptics& optics() const;
-  [[nodiscard]] const CloudSunMap& sun_map() const;
+  [[nodiscard]] const CloudSunDepths& sun() const;
   [[nodiscard]] const CloudFactor& factor() const;
   /// Returns the solution for the sun.
   [[nodiscard]] const SolvedCloudMoments& sun_moments() const;

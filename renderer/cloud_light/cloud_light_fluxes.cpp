@@ -32,7 +32,7 @@ class ColumnOfRays {
 
   /// @param first  number of the first point of Halton's sequences.
   [[nodiscard]] CloudLightFluxes Fluxes(int first, int rays) const {
-    const glm::dvec3 to_sun = light_.sun_map().to_sun();
+    const glm::dvec3 to_sun = light_.sun().to_sun();
     CloudLightFluxes sum;
     for (int i = first + 1; i <= first + rays; ++i) {
       const glm::dvec2 place = low_ + size_ * glm::dvec2(Halton(i, 2), Halton(i, 3));
@@ -56,7 +56,7 @@ class ColumnOfRays {
   [[nodiscard]] glm::dvec3 UpwardsFromBase(int i, double cosine, double azimuth_rad) const {
     if (Halton(i, 11) < 0.5) return AroundAxis({0.0, 0.0, 1.0}, cosine, azimuth_rad);
     const double from_sun = SampleCosine(light_.optics().phase(), Halton(i, 13));
-    return AroundAxis(light_.sun_map().to_sun(), from_sun, azimuth_rad);
+    return AroundAxis(light_.sun().to_sun(), from_sun, azimuth_rad);
   }
 
   const CloudLight& light_;

@@ -2,11 +2,15 @@
 #include "renderer/cloud_light/cloud_low_sun.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <numeric>
+#include <vector>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -14,7 +18,7 @@ namespace {
 
 constexpr double kHighestLowSun_deg = 10.0;
 // Far away, where only what is left of the light matters, steps are longer.
-constexpr double kStepPerDistance = 0.005, kMostStep = 4.0;
+constexpr double kStepPerDistance = 0.02, kMostStep = 4.0;
 
 double LowElevation_rad(const glm::dvec3& to_sun) {
   if (!(std::abs(glm::length(to_sun) - 1.0) <= 1e-6)) {
@@ -40,20 +44,23 @@ bool IsLow(const glm::dvec3& to_sun) {
 
 CloudLowSun::CloudLowSun(const CloudField& field, const glm::dvec3& to_sun,
                          const CloudLowSunOptions& options)
-    : tracker_(field, false),
+    : to_sun_(to_sun),
+      tracker_(field, false),
       low_m_(field.base_altitude_m()),
       high_m_(field.top_altitude_m()),
       elevation_rad_(LowElevation_rad(to_sun)),
       place_m_(options.place_m),
       per_radius_(1.0 / RequireInRange(options.planet_radius_m, 1e5, 1e9,
                                        "the radius of the planet under clouds [m]")),
-      step_m_(RequireInRange(options.step_m, 1.0, 100.0, "the step of a beam in clouds [m]")) {
+      step_m_(RequireInRange(options.step_m, 1.0, 100.0, "the step of a beam in clouds [m]")),
+      farthest_m_(RequireInRange(options.farthest_m, 1e3, 4e5,
+                                 "the distance where beams in clouds end [m]")) {
   azimuth_ = glm::normalize(glm::dvec2(to_sun));
 }
 
-glm::dvec3 CloudLowSun::PointAlong(const glm::dvec3& point, double distance_m) const {
-  return {glm::dvec2(point) + distance_m * azimuth_,
-          point.z + distance_m * (SlopeAt(point) + 0.5 * distance_m * per_radius_)};
+glm::dvec3 CloudLowSun::ToSunAt(const glm::dvec3& point) const {
+  const double elevation_rad = ElevationAt_rad(point);
+  return {std::cos(elevation_rad) * azimuth_, std::sin(elevation_rad)};
 }
 
 CloudLowSun::Interval CloudLowSun::Below(double altitude_m, double slope) const {
@@ -65,22 +72,22 @@ CloudLowSun::Interval CloudLowSun::Below(double altitude_m, double slope) const 
   return {std::max(0.0, std::min(one_m, other_m)), std::max(0.0, std::max(one_m, other_m))};
 }
 
-double CloudLowSun::OpticalDepth(const glm::dvec3& point) const {
+double CloudLowSun::OpticalDepth(const glm::dvec3& point, double slope, double most_depth) const {
   double depth = 0.0;
-  EachChord(point, [&](const CloudRay& ray, double length_m) {
+  EachChord(point, slope, [&](const CloudRay& ray, double length_m) {
     const double away_m = glm::length(ray.origin - point);
     const double most_m = std::clamp(kStepPerDistance * away_m, step_m_, kMostStep * step_m_);
     tracker_.EachSpan(ray, length_m, [&](double begin_m, double end_m, double) {
       const double steps = std::ceil((end_m - begin_m) / most_m);
       const double step_m = (end_m - begin_m) / steps;
-      for (double i = 0.0; i < steps && depth < kDeepest; ++i) {
+      for (double i = 0.0; i < steps && depth < most_depth; ++i) {
         depth += step_m * tracker_.Extinction_per_m(ray.At(begin_m + (i + 0.5) * step_m));
       }
-      return depth < kDeepest;
+      return depth < most_depth;
     });
-    return depth < kDeepest;
+    return depth < most_depth;
   });
-  return std::min(depth, kDeepest);
+  return std::min(depth, most_depth);
 }
 
 CloudSunDepths::CloudSunDepths(const CloudField& field, const glm::dvec3& to_sun,
@@ -92,20 +99,28 @@ CloudSunDepths::CloudSunDepths(const CloudField& field, const glm::dvec3& to_sun
       }()) {}
 
 double CloudSunDepths::OpticalDepth(const glm::dvec3& point) const {
-  if (const auto* map = std::get_if<CloudSunMap>(&sun_)) {
-    return OpticalDepthToSun(*field_, *map, point);
-  }
-  return std::get<CloudLowSun>(sun_).OpticalDepth(point);
+  return map() ? OpticalDepthToSun(*field_, *map(), point) : low_sun()->OpticalDepth(point);
 }
 
 double CloudSunDepths::Transmittance(const glm::dvec3& point) const {
-  if (const auto* map = std::get_if<CloudSunMap>(&sun_)) return map->Transmittance(point);
-  return std::exp(-std::get<CloudLowSun>(sun_).OpticalDepth(point));
+  return map() ? map()->Transmittance(point) : std::exp(-low_sun()->OpticalDepth(point));
 }
 
-std::size_t CloudSunDepths::bytes() const {
-  const auto* map = std::get_if<CloudSunMap>(&sun_);
-  return map ? map->bytes() : 0;
+double CloudSunDepths::MeanTransmittance(double altitude_m) const {
+  if (map()) return altitude_m < field_->top_altitude_m() ? map()->MeanTransmittance() : 1.0;
+  constexpr int kBeams = 4096;
+  const CloudLattice& lattice = field_->lattice();
+  std::vector<double> left(kBeams);
+  tbb::parallel_for(0, kBeams, [&](int i) {
+    const glm::dvec2 place =
+        glm::dvec2(lattice.origin_m) +
+        glm::dvec2(lattice.size_m()) * glm::dvec2(Halton(i + 1, 2), Halton(i + 1, 3));
+    left[static_cast<std::size_t>(i)] =
+        std::exp(-low_sun()->OpticalDepthAsAtPlace({place, altitude_m}));
+  });
+  return std::accumulate(left.begin(), left.end(), 0.0) / kBeams;
 }
+
+std::size_t CloudSunDepths::bytes() const { return map() ? map()->bytes() : 0; }
 
 }  // namespace alpenglow::renderer

@@ -12,7 +12,9 @@
 // 5 s^4 / (24 R^3) for e = 0, 21 m at 400 km.) A sun below the horizontal is seen by high clouds, and
 // lights them from below: its beams sink out of the layer, and cross it again far away. They are
 // followed up to there in chords of 2 km, which leave the parabola by 0.08 m. Fields repeat in x, y
-// and z of this frame, as if their plane were bent over the planet.
+// and z of this frame, as if their plane were bent over the planet. A layer that goes on so far would
+// always shade itself from a sun below the horizontal; beams therefore end after a distance, beyond
+// which the air has no clouds.
 //
 // The sun is higher by s / R for points nearer to it. The ground does not end a beam.
 #pragma once
@@ -31,13 +33,14 @@
 
 namespace alpenglow::renderer {
 
-/// The lowest sun for clouds: clouds at 4 km see it at the horizon of the sea.
-inline constexpr double kLowestCloudLight_deg = -2.1;
+/// The lowest sun for clouds: clouds at 15 km see it at the horizon of the sea.
+inline constexpr double kLowestCloudLight_deg = -4.0;
 
 struct CloudLowSunOptions {
   glm::dvec2 place_m{0.0};           // where the sun has the given direction
   double planet_radius_m = 6.371e6;  // in [1e5, 1e9]; 7/6 of it for rays in refracting air
   double step_m = 20.0;              // in cloud, in [1, 100]; up to four times as long far away
+  double farthest_m = 4e5;           // where beams end, along the ground, in [1e3, 4e5]
 };
 
 /// Immutable; safe to use from many threads. The field must outlive it.
@@ -49,28 +52,39 @@ class CloudLowSun {
   CloudLowSun(const CloudField& field, const glm::dvec3& to_sun,
               const CloudLowSunOptions& options = {});
 
+  /// Returns the unit vector to the sun from the place, and from a point.
+  [[nodiscard]] const glm::dvec3& to_sun() const { return to_sun_; }
+  [[nodiscard]] glm::dvec3 ToSunAt(const glm::dvec3& point) const;
+
   /// Returns the optical depth from a point to the sun, at most kDeepest: where it is reached, the
-  /// beam ends. Beams end after kFarthest_m, too, so that the time is bounded.
-  [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const;
+  /// beam ends.
+  [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const {
+    return OpticalDepth(point, SlopeAt(point), kDeepest);
+  }
+  /// Returns the same as if the sun were as high as over the place, so that a periodic field has
+  /// periodic light; at most kDeepestMean.
+  [[nodiscard]] double OpticalDepthAsAtPlace(const glm::dvec3& point) const {
+    return OpticalDepth(point, std::tan(elevation_rad_), kDeepestMean);
+  }
 
   /// Returns an unbiased estimate of the transmittance along the same beam.
   /// @param random  has Next(), uniform in [0, 1).
   template <typename Random>
   [[nodiscard]] double Transmittance(const glm::dvec3& point, Random& random) const;
 
-  /// Returns the point of the beam through a point at a distance along the ground.
-  [[nodiscard]] glm::dvec3 PointAlong(const glm::dvec3& point, double distance_m) const;
-
-  static constexpr double kDeepest = 32.0, kFarthest_m = 4e5;
+  static constexpr double kDeepest = 32.0, kDeepestMean = 12.0;
 
  private:
   static constexpr double kChord_m = 2000.0;
 
+  [[nodiscard]] double ElevationAt_rad(const glm::dvec3& point) const {
+    return elevation_rad_ + glm::dot(glm::dvec2(point) - place_m_, azimuth_) * per_radius_;
+  }
   /// Returns the tangent of the sun's elevation at a point.
   [[nodiscard]] double SlopeAt(const glm::dvec3& point) const {
-    return std::tan(elevation_rad_ +
-                    glm::dot(glm::dvec2(point) - place_m_, azimuth_) * per_radius_);
+    return std::tan(ElevationAt_rad(point));
   }
+  [[nodiscard]] double OpticalDepth(const glm::dvec3& point, double slope, double most_depth) const;
   /// A part of a beam.
   struct Interval {
     double begin_m, end_m;
@@ -80,19 +94,22 @@ class CloudLowSun {
   [[nodiscard]] Interval Below(double altitude_m, double slope) const;
   /// Calls visit(ray, length_m) for chords of the beam between the altitudes of the field, in order,
   /// until it returns false.
+  /// @param slope  of the beam at the point.
   template <typename Visit>
-  void EachChord(const glm::dvec3& point, const Visit& visit) const;
+  void EachChord(const glm::dvec3& point, double slope, const Visit& visit) const;
 
+  glm::dvec3 to_sun_;
   CloudTracker tracker_;
   double low_m_, high_m_;  // altitudes of the field's clouds
   glm::dvec2 azimuth_;     // unit vector to the sun on the ground
   double elevation_rad_;
   glm::dvec2 place_m_;
-  double per_radius_, step_m_;
+  double per_radius_, step_m_, farthest_m_;
 };
 
 /// Optical depths to a sun of any elevation from kLowestCloudLight_deg on: by a map from
-/// kLowestCloudSun_deg on, and by following beams below. The field must outlive it.
+/// kLowestCloudSun_deg on, and by following beams below. Immutable; safe to use from many threads. The
+/// field must outlive it.
 class CloudSunDepths {
  public:
   /// Throws the InputErrors of CloudSunMap and CloudLowSun.
@@ -100,12 +117,34 @@ class CloudSunDepths {
                  const CloudSunMapOptions& map_options = {},
                  const CloudLowSunOptions& low_options = {});
 
-  [[nodiscard]] bool has_map() const { return std::holds_alternative<CloudSunMap>(sun_); }
+  [[nodiscard]] const CloudField& field() const { return *field_; }
+  /// Returns the map or the beams; null if the other has the depths.
+  [[nodiscard]] const CloudSunMap* map() const { return std::get_if<CloudSunMap>(&sun_); }
+  [[nodiscard]] const CloudLowSun* low_sun() const { return std::get_if<CloudLowSun>(&sun_); }
+  /// Returns the unit vector to the sun, over the place of a low one.
+  [[nodiscard]] const glm::dvec3& to_sun() const {
+    return map() ? map()->to_sun() : low_sun()->to_sun();
+  }
+  /// Returns the unit vector to the sun at a point: over a round planet for a low one.
+  [[nodiscard]] glm::dvec3 ToSunAt(const glm::dvec3& point) const {
+    return map() ? map()->to_sun() : low_sun()->ToSunAt(point);
+  }
   /// Returns the optical depth from a point to the sun: OpticalDepthToSun() or
   /// CloudLowSun::OpticalDepth().
   [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const;
   /// Returns the transmittance for points in clear air and on the ground.
   [[nodiscard]] double Transmittance(const glm::dvec3& point) const;
+  /// Returns CloudSunMap::TransmittanceAround(), or that at the point under a low sun.
+  [[nodiscard]] double TransmittanceAround(const glm::dvec3& point) const {
+    return map() ? map()->TransmittanceAround(point) : Transmittance(point);
+  }
+  /// Returns the mean transmittance from a plane below or above the field to the sun: that of the
+  /// map, or of 4096 beams over the place, whose standard error is 0.008 at most.
+  [[nodiscard]] double MeanTransmittance(double altitude_m) const;
+  /// Returns the same from the base of the field.
+  [[nodiscard]] double MeanTransmittance() const {
+    return MeanTransmittance(field_->base_altitude_m());
+  }
   /// Returns the memory of the map [bytes]; 0 without one.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -115,19 +154,22 @@ class CloudSunDepths {
 };
 
 template <typename Visit>
-void CloudLowSun::EachChord(const glm::dvec3& point, const Visit& visit) const {
-  const double slope = SlopeAt(point);
+void CloudLowSun::EachChord(const glm::dvec3& point, double slope, const Visit& visit) const {
+  const auto along = [&](double distance_m) {
+    return glm::dvec3(glm::dvec2(point) + distance_m * azimuth_,
+                      point.z + distance_m * (slope + 0.5 * distance_m * per_radius_));
+  };
   const Interval layer = Below(high_m_ - point.z, slope), gap = Below(low_m_ - point.z, slope);
   const auto follow = [&](double begin_m, double end_m) {
     for (double at_m = begin_m; at_m < end_m; at_m += kChord_m) {
-      const glm::dvec3 from = PointAlong(point, at_m);
-      const glm::dvec3 way = PointAlong(point, std::min(at_m + kChord_m, end_m)) - from;
+      const glm::dvec3 from = along(at_m);
+      const glm::dvec3 way = along(std::min(at_m + kChord_m, end_m)) - from;
       const double length_m = glm::length(way);
       if (length_m > 0.0 && !visit(CloudRay{from, way / length_m}, length_m)) return false;
     }
     return true;
   };
-  const double last_m = std::min(layer.end_m, kFarthest_m);
+  const double last_m = std::min(layer.end_m, farthest_m_);
   if (gap.begin_m >= gap.end_m) {
     (void)follow(layer.begin_m, last_m);
   } else if (follow(layer.begin_m, std::min(gap.begin_m, last_m))) {
@@ -138,7 +180,7 @@ void CloudLowSun::EachChord(const glm::dvec3& point, const Visit& visit) const {
 template <typename Random>
 double CloudLowSun::Transmittance(const glm::dvec3& point, Random& random) const {
   double left = 1.0;
-  EachChord(point, [&](const CloudRay& ray, double length_m) {
+  EachChord(point, SlopeAt(point), [&](const CloudRay& ray, double length_m) {
     left *= tracker_.Transmittance(ray, length_m, random);
     return left > 0.0;
   });

@@ -112,21 +112,17 @@ struct CollidedLight {
 /// Lines of beams are shared among this number of sums, which are added in order.
 constexpr int kBeamSums = 16;
 
-CollidedLight CollidedIn(const CloudCells& cells, const CloudSunMap& map, double extinction_scale) {
+/// Returns the sum of light that visit(i, add) adds by add(point, collided_m2), for i < kBeamSums.
+template <typename Visit>
+CollidedLight SumOfCollided(const CloudCells& cells, const glm::dvec3& ahead, const Visit& visit) {
   std::vector<CollidedLight> sums(kBeamSums);
   tbb::parallel_for(0, kBeamSums, [&](int i) {
     CollidedLight& sum = sums[static_cast<std::size_t>(i)];
     sum.of_cell_m2.assign(cells.full(), 0.0);
-    const auto add = [&](const CloudSunMap::BeamPart& part) {
-      const double collided_m2 =
-          -map.to_sun().z * part.area_m2 * std::exp(-extinction_scale * part.depth_above) *
-          std::expm1(-extinction_scale * (part.depth_below - part.depth_above));
-      const std::int32_t cell = cells.FullCellAt(part.middle, -map.to_sun());
+    visit(i, [&](const glm::dvec3& point, double collided_m2) {
+      const std::int32_t cell = cells.FullCellAt(point, ahead);
       (cell < 0 ? sum.lost_m2 : sum.of_cell_m2[static_cast<std::size_t>(cell)]) += collided_m2;
-    };
-    for (int line = map.lines() * i / kBeamSums; line < map.lines() * (i + 1) / kBeamSums; ++line) {
-      map.EachPartOfLine(line, add);
-    }
+    });
   });
   CollidedLight all = std::move(sums.front());
   for (std::size_t i = 1; i < sums.size(); ++i) {
@@ -136,6 +132,47 @@ CollidedLight CollidedIn(const CloudCells& cells, const CloudSunMap& map, double
     }
   }
   return all;
+}
+
+CollidedLight CollidedOfMap(const CloudCells& cells, const CloudSunMap& map,
+                            double extinction_scale) {
+  return SumOfCollided(cells, -map.to_sun(), [&](int i, const auto& add) {
+    const auto add_part = [&](const CloudSunMap::BeamPart& part) {
+      add(part.middle, -map.to_sun().z * part.area_m2 *
+                           std::exp(-extinction_scale * part.depth_above) *
+                           std::expm1(-extinction_scale * (part.depth_below - part.depth_above)));
+    };
+    for (int line = map.lines() * i / kBeamSums; line < map.lines() * (i + 1) / kBeamSums; ++line) {
+      map.EachPartOfLine(line, add_part);
+    }
+  });
+}
+
+CollidedLight CollidedOfLowSun(const CloudCells& cells, const CloudField& field,
+                               const CloudLowSun& sun, double extinction_scale) {
+  constexpr std::size_t kPoints = 8;
+  const glm::dvec3 cell_m = cells.cell_m();
+  const double scale_m3 = extinction_scale * cell_m.x * cell_m.y * cell_m.z / kPoints;
+  return SumOfCollided(cells, -sun.to_sun(), [&](int i, const auto& add) {
+    const auto part = static_cast<std::size_t>(i);
+    const std::size_t end = cells.size() * (part + 1) / kBeamSums * kPoints;
+    for (std::size_t k = cells.size() * part / kBeamSums * kPoints; k < end; ++k) {
+      const auto number = static_cast<int>(k + 1);
+      const glm::dvec3 inside(Halton(number, 2), Halton(number, 3), Halton(number, 5));
+      const glm::dvec3 point = cells.Middle(k / kPoints) + (inside - 0.5) * cell_m;
+      const double extinction_per_m = field.Extinction_per_m(point);
+      if (extinction_per_m <= 0.0) continue;
+      add(point, scale_m3 * extinction_per_m *
+                     std::exp(-extinction_scale * sun.OpticalDepthAsAtPlace(point)));
+    }
+  });
+}
+
+CollidedLight CollidedIn(const CloudCells& cells, const CloudSunDepths& to_sun,
+                         double extinction_scale) {
+  return to_sun.map()
+             ? CollidedOfMap(cells, *to_sun.map(), extinction_scale)
+             : CollidedOfLowSun(cells, to_sun.field(), *to_sun.low_sun(), extinction_scale);
 }
 
 /// Returns the light of fine cells by coarse ones.
@@ -427,24 +464,26 @@ SolvedCloudMoments CloudMomentSolver::Cascade(const std::vector<Source>& sources
   return std::move(*solved);
 }
 
-SolvedCloudMoments CloudMomentSolver::Sun(const CloudSunMap& map) const {
+SolvedCloudMoments CloudMomentSolver::Sun(const CloudSunDepths& to_sun) const {
   const double scale = optics_->extinction_scale();
-  const CollidedLight collided = CollidedIn(cells(), map, scale);
+  const CollidedLight collided = CollidedIn(cells(), to_sun, scale);
   std::vector<Source> sources(grids_.size());
   for (std::size_t i = 0; i < grids_.size(); ++i) {
     const CloudCells& of = *grids_[i]->cells();
     const bool is_finest = i + 1 == grids_.size();
-    sources[i].beam_harmonics = CloudHarmonicsOf(-map.to_sun());
+    sources[i].beam_harmonics = CloudHarmonicsOf(-to_sun.to_sun());
     sources[i].beam = BeamIn(
-        of, is_finest ? collided : OnCoarseCells(collided, cells(), of, -map.to_sun()), scale);
+        of, is_finest ? collided : OnCoarseCells(collided, cells(), of, -to_sun.to_sun()), scale);
   }
   SolvedCloudMoments solved = Cascade(sources);
   if (cells().is_periodic()) {
     // The scaled beam has light that droplets turn by a few degrees.
     const glm::dvec3 size_m =
         cells().cell_m() * glm::dvec3(cells().count()[0], cells().count()[1], 1.0);
-    const double scaled = map.to_sun().z - collided.Sum_m2() / (size_m.x * size_m.y);
-    solved.down_at_base += scaled - map.to_sun().z * map.MeanTransmittance();
+    const double level = std::max(to_sun.to_sun().z, 0.0);
+    const double scaled = level - collided.Sum_m2() / (size_m.x * size_m.y);
+    const double peak = scaled - level * to_sun.MeanTransmittance();
+    solved.down_at_base += to_sun.map() ? peak : std::max(peak, 0.0);
   }
   return solved;
 }

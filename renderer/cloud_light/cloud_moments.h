@@ -13,7 +13,8 @@
 // Stat. Comput. 7, 856) solve M = K M + b.
 //
 // The source of the beam is exact: every part of a beam of the map of sunlight gives what it loses
-// to the cell that it lies in, or to the nearest full one.
+// to the cell that it lies in, or to the nearest full one. A sun too low for a map is as high as over
+// the place everywhere; eight points in each cell stand for its beams.
 //
 // Uniform light from above and below is an equilibrium of droplets that absorb nothing, so that the
 // light of a uniform ground is 1 less that of the sky. Absorbing ones need their own solution.
@@ -26,8 +27,8 @@
 #include <vector>
 
 #include "renderer/cloud_light/cloud_cells.h"
+#include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/cloud_light/cloud_optics.h"
-#include "renderer/cloud_light/cloud_sun_map.h"
 
 namespace alpenglow::renderer {
 
@@ -81,8 +82,8 @@ class CloudMomentSolver {
   CloudMomentSolver& operator=(CloudMomentSolver&&) noexcept;
 
   /// Each uses as many threads as are free; the result does not depend on their number.
-  /// @param map  of the same field. Unit irradiance across the beam.
-  [[nodiscard]] SolvedCloudMoments Sun(const CloudSunMap& map) const;
+  /// @param to_sun  of the same field. Unit irradiance across the beam.
+  [[nodiscard]] SolvedCloudMoments Sun(const CloudSunDepths& to_sun) const;
   /// Unit radiance from all directions above.
   [[nodiscard]] SolvedCloudMoments Sky() const;
   /// Unit radiance from all directions below.

@@ -116,6 +116,7 @@ const PhaseFunction& CloudPathTracer::PhaseAt(const glm::dvec3& point, PathRando
 }
 
 double CloudPathTracer::SunTransmittance(const glm::dvec3& point, PathRandom& random) const {
+  if (surroundings_.low_sun != nullptr) return surroundings_.low_sun->Transmittance(point, random);
   return tracker_.Transmittance({point, surroundings_.to_sun}, kUnbounded_m, random);
 }
 

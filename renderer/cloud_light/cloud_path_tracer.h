@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "atmosphere/reference/path_sampling.h"
+#include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/cloud_light/cloud_phase.h"
 #include "renderer/cloud_light/cloud_tracking.h"
 #include "renderer/clouds/cloud_field.h"
@@ -40,6 +41,8 @@ struct CloudSurroundings {
   glm::dvec3 to_sun{0.0, 0.0, 1.0};  // unit vector; the ground does not hide a low sun
   double ground_albedo = 0.0;        // in [0, 1]
   double ground_altitude_m = 0.0;    // at or below the base of the field
+  /// Beams over a round planet, for radiances; null: straight ones. It must outlive the tracer.
+  const CloudLowSun* low_sun = nullptr;
 };
 
 /// Phase functions and albedo of droplets or crystals at one wavelength.

@@ -22,6 +22,11 @@ struct RayOverSphere {
   double altitude_m;  // of the origin
   double mu;          // cosine between direction and vertical at the origin
 
+  RayOverSphere(const glm::dvec3& origin, const glm::dvec3& direction, double planet_radius_m)
+      : radius_m(planet_radius_m),
+        altitude_m(AltitudeOverSphere(origin, planet_radius_m)),
+        mu(glm::dot(direction, glm::normalize(origin + glm::dvec3(0.0, 0.0, planet_radius_m)))) {}
+
   /// Returns the part of the line below an altitude; no value if none is.
   [[nodiscard]] std::optional<Interval> Below(double height_m) const {
     const double from_centre_m = radius_m + altitude_m;
@@ -57,12 +62,22 @@ glm::dvec3 InFlatFrame(const glm::dvec3& point, double planet_radius_m) {
   return {stretch * point.x, stretch * point.y, AltitudeOverSphere(point, planet_radius_m)};
 }
 
+std::vector<double> CrossingsOf(double altitude_m, const glm::dvec3& origin,
+                                const glm::dvec3& direction, double length_m,
+                                double planet_radius_m) {
+  std::vector<double> distances_m;
+  const auto below = RayOverSphere(origin, direction, planet_radius_m).Below(altitude_m);
+  if (!below) return distances_m;
+  for (const double at_m : {below->begin_m, below->end_m}) {
+    if (at_m > 0.0 && at_m < length_m) distances_m.push_back(at_m);
+  }
+  return distances_m;
+}
+
 std::vector<CloudChord> ChordsWithin(const AltitudeRange& range, const glm::dvec3& origin,
                                      const glm::dvec3& direction, double length_m,
                                      double planet_radius_m) {
-  const glm::dvec3 up = glm::normalize(origin + glm::dvec3(0.0, 0.0, planet_radius_m));
-  const RayOverSphere ray{planet_radius_m, AltitudeOverSphere(origin, planet_radius_m),
-                          glm::dot(direction, up)};
+  const RayOverSphere ray(origin, direction, planet_radius_m);
   std::vector<CloudChord> chords;
   const auto add = [&](double from_m, double to_m) {
     const double begin_m = std::max(from_m, 0.0), end_m = std::min(to_m, length_m);

@@ -42,6 +42,11 @@ struct AltitudeRange {
   double low_m, high_m;
 };
 
+/// Returns the distances in (0, length_m) at which a ray crosses an altitude, in order: none to two.
+[[nodiscard]] std::vector<double> CrossingsOf(double altitude_m, const glm::dvec3& origin,
+                                              const glm::dvec3& direction, double length_m,
+                                              double planet_radius_m);
+
 /// Returns the parts of a ray within a range of altitudes, in order, cut to chords. The planet does
 /// not end the ray.
 /// @param length_m  of the ray; may be infinite.

@@ -17,15 +17,22 @@ constexpr double kPhase_nm = 550.0;
 /// Sun and moon of two frames.
 constexpr std::size_t kKept = 4;
 
-/// Returns the direction of the beam in a field: that of the light, but not below the lowest sun of a
-/// map.
+/// Returns the direction of the beam in a field: that of the light, but not below the lowest one,
+/// which no cloud sees.
 glm::dvec3 BeamDirection(const glm::dvec3& to_light) {
-  const double lowest = std::sin(kLowestCloudSun_deg * kPi / 180.0);
+  const double lowest = std::sin(kLowestCloudLight_deg * kPi / 180.0);
   if (to_light.z >= lowest) return to_light;
   const double across = std::hypot(to_light.x, to_light.y),
                level = std::sqrt(1.0 - lowest * lowest);
   if (across == 0.0) return {level, 0.0, lowest};  // straight below: any azimuth
   return {level / across * to_light.x, level / across * to_light.y, lowest};
+}
+
+CloudLightOptions LightOptions(double planet_radius_m) {
+  CloudLightOptions options;
+  options.low_sun.planet_radius_m = planet_radius_m;
+  options.low_sun.farthest_m = kFarthestShade_m;
+  return options;
 }
 
 }  // namespace
@@ -47,7 +54,7 @@ SolvedClouds CloudsByTime::Solved(double time_s, const glm::dvec3& to_light) con
   for (const SceneCloudField& layer : *solved.layers) {
     CloudPhases phases = layer.is_of_ice ? IcePhases(kPhase_nm) : DropletPhases(kPhase_nm);
     solved.light.emplace_back(layer.field, CloudScatterers{std::move(phases)},
-                              CloudSurroundings{.to_sun = beam});
+                              CloudSurroundings{.to_sun = beam}, LightOptions(radius_m_));
   }
   return solved;
 }

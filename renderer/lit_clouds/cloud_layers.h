@@ -19,11 +19,15 @@ namespace alpenglow::renderer {
 /// Layers of clouds at one time, from the lowest to the highest base.
 using CloudLayers = std::vector<SceneCloudField>;
 
-/// Layers under one distant light. The light is as high as kLowestCloudSun_deg at least.
+/// Layers under one distant light. The light is as high as kLowestCloudLight_deg at least.
 struct SolvedClouds {
   std::shared_ptr<const CloudLayers> layers;
   std::vector<CloudLight> light;  // of each layer, over black ground
 };
+
+/// Clouds at a greater distance towards a sun below kLowestCloudSun_deg do not shade clouds. A layer
+/// that went on without end would never be lit from below.
+inline constexpr double kFarthestShade_m = 120e3;
 
 /// Generates and solves the clouds of a scene on demand, and keeps the last solutions: a frame of a
 /// series is metered in a small picture while the frame before it is developed, and the choice of
@@ -31,7 +35,9 @@ struct SolvedClouds {
 class CloudsByTime {
  public:
   /// @param ground_m  height of the ground at the scene's place above the ellipsoid.
-  CloudsByTime(const Scene& scene, double ground_m) : scene_(scene) {
+  /// @param planet_radius_m  of the air of the scene.
+  CloudsByTime(const Scene& scene, double ground_m, double planet_radius_m)
+      : scene_(scene), radius_m_(planet_radius_m) {
     scene_.clouds = OverEllipsoid(scene_.clouds, ground_m);
   }
 
@@ -52,6 +58,7 @@ class CloudsByTime {
   [[nodiscard]] SolvedClouds Solved(double time_s, const glm::dvec3& to_light) const;
 
   Scene scene_;
+  double radius_m_;
   std::mutex asking_;
   std::deque<Made> made_;  // oldest first
 };

@@ -48,23 +48,23 @@ double EdgeHeightFor(double sunlight) {
   return std::lerp(heights[node], heights[node + 1], at - static_cast<double>(node));
 }
 
-CloudShadow::CloudShadow(std::vector<std::shared_ptr<const CloudSunMap>> maps,
+CloudShadow::CloudShadow(std::vector<std::shared_ptr<const CloudSunDepths>> suns,
                          double highest_cloud_m, double planet_radius_m)
-    : maps_(std::move(maps)), highest_cloud_m_(highest_cloud_m), radius_m_(planet_radius_m) {
-  for (const auto& map : maps_) mean_transmittance_ *= map->MeanTransmittance();
+    : suns_(std::move(suns)), highest_cloud_m_(highest_cloud_m), radius_m_(planet_radius_m) {
+  for (const auto& sun : suns_) mean_transmittance_ *= sun->MeanTransmittance();
 }
 
 double CloudShadow::Transmittance(const glm::dvec3& point) const {
   const glm::dvec3 flat = InFlatFrame(point, radius_m_);
   double left = 1.0;
-  for (const auto& map : maps_) left *= map->Transmittance(flat);
+  for (const auto& sun : suns_) left *= sun->Transmittance(flat);
   return left;
 }
 
 double CloudShadow::TransmittanceAround(const glm::dvec3& point) const {
   const glm::dvec3 flat = InFlatFrame(point, radius_m_);
   double left = 1.0;
-  for (const auto& map : maps_) left *= map->TransmittanceAround(flat);
+  for (const auto& sun : suns_) left *= sun->TransmittanceAround(flat);
   return left;
 }
 

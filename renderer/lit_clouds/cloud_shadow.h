@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The shadows of clouds: on the ground, on other media, and as shafts in the air.
 //
-// Sun maps of all layers (CloudSunMap) give the transmittance of clouds from a point to the light.
+// Depths of all layers (CloudSunDepths) give the transmittance of clouds from a point to the light.
 // Along a ray, it multiplies the light that terrain lets through. A path of sunlight describes a
 // partial shade by the height x of the disk over an edge (SunlitPiece); a transmittance T is the
 // height with SunlightOverEdge(x) = T.
@@ -11,7 +11,7 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/cloud_light/cloud_sun_map.h"
+#include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/layer.h"
 #include "renderer/visibility/sunlit_path.h"
 
@@ -24,8 +24,8 @@ namespace alpenglow::renderer {
 /// Immutable; safe to use from many threads. Points and rays are in the frame of a scene.
 class CloudShadow {
  public:
-  /// @param maps  of each layer, for one light.
-  CloudShadow(std::vector<std::shared_ptr<const CloudSunMap>> maps, double highest_cloud_m,
+  /// @param suns  of each layer, for one light.
+  CloudShadow(std::vector<std::shared_ptr<const CloudSunDepths>> suns, double highest_cloud_m,
               double planet_radius_m);
 
   /// Returns the altitude of the highest cloud [m]; 0 without layers.
@@ -47,7 +47,7 @@ class CloudShadow {
   /// Returns the product of the layers' means around a point.
   [[nodiscard]] double TransmittanceAround(const glm::dvec3& point) const;
 
-  std::vector<std::shared_ptr<const CloudSunMap>> maps_;
+  std::vector<std::shared_ptr<const CloudSunDepths>> suns_;
   double highest_cloud_m_, radius_m_;
   double mean_transmittance_ = 1.0;
 };

@@ -12,30 +12,27 @@ struct FromBelow {
 /// Returns the diffuse light downwards below a layer.
 double DownBelow(const CloudLayerFluxes& layer, const FromBelow& below,
                  const InterfaceFluxes& above) {
-  return (layer.sky_down * above.down + layer.sun_down * above.direct +
-          layer.sky_up * below.source) /
+  return (layer.sky_down * above.down + layer.sun_down + layer.sky_up * below.source) /
          (1.0 - layer.sky_up * below.albedo);
 }
 
-FromBelow Raised(const CloudLayerFluxes& layer, const FromBelow& below, double direct_above) {
-  const InterfaceFluxes unit{.down = 1.0}, direct{.direct = direct_above};
-  const FromBelow no_source{below.albedo, 0.0};
-  return {layer.sky_up + layer.sky_down * below.albedo * DownBelow(layer, no_source, unit),
-          layer.sun_up * direct_above +
-              layer.sky_down * (below.albedo * DownBelow(layer, below, direct) + below.source)};
+FromBelow Raised(const CloudLayerFluxes& layer, const FromBelow& below) {
+  const CloudLayerFluxes unlit{.sky_up = layer.sky_up, .sky_down = layer.sky_down};
+  const double of_unit = DownBelow(unlit, {below.albedo, 0.0}, {.down = 1.0});
+  return {
+      layer.sky_up + layer.sky_down * below.albedo * of_unit,
+      layer.sun_up + layer.sky_down * (below.albedo * DownBelow(layer, below, {}) + below.source)};
 }
 
 }  // namespace
 
 std::vector<InterfaceFluxes> FluxesBetween(std::span<const CloudLayerFluxes> layers,
-                                           const InterfaceFluxes& above, double ground_albedo) {
+                                           const OuterFluxes& outer, double ground_albedo) {
   const std::size_t count = layers.size();
   std::vector<InterfaceFluxes> at(count + 1);
-  at[count] = above;
-  for (std::size_t i = count; i-- > 0;) at[i].direct = layers[i].sun_direct * at[i + 1].direct;
-  std::vector<FromBelow> below{{ground_albedo, ground_albedo * at[0].direct}};
-  for (std::size_t i = 0; i < count; ++i)
-    below.push_back(Raised(layers[i], below[i], at[i + 1].direct));
+  at[count].down = outer.sky;
+  std::vector<FromBelow> below{{ground_albedo, ground_albedo * outer.direct_on_ground}};
+  for (std::size_t i = 0; i < count; ++i) below.push_back(Raised(layers[i], below[i]));
   for (std::size_t i = count; i-- > 0;) at[i].down = DownBelow(layers[i], below[i], at[i + 1]);
   for (std::size_t i = 0; i <= count; ++i)
     at[i].up = below[i].albedo * at[i].down + below[i].source;

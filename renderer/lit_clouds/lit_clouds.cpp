@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <utility>
 
 #include "atmosphere/math/constants.h"
@@ -11,17 +12,30 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// Returns the fluxes of a layer over black ground, from those on the ground. Droplets absorb nothing.
+/// Returns the fluxes of a layer over black ground for a unit beam. Droplets absorb nothing.
 CloudLayerFluxes FluxesOf(const CloudLight& light) {
   const CloudGroundIrradiance& on_ground = light.ground_irradiance();
-  const double sine = light.sun_map().to_sun().z;
   CloudLayerFluxes fluxes;
-  fluxes.sun_direct = on_ground.direct / sine;
-  fluxes.sun_down = on_ground.diffuse / sine;
-  fluxes.sun_up = std::max(1.0 - fluxes.sun_direct - fluxes.sun_down, 0.0);
+  fluxes.sun_down = on_ground.diffuse;
+  fluxes.sun_up = light.sun().map()
+                      ? std::max(light.sun().to_sun().z - on_ground.direct - on_ground.diffuse, 0.0)
+                      : light.sun_moments().up_at_top;
   fluxes.sky_down = on_ground.sky / kPi;
   fluxes.sky_up = std::max(1.0 - fluxes.sky_down, 0.0);
   return fluxes;
+}
+
+/// Returns a ratio of fluxes; 1 in the dark.
+double Ratio(double flux, double clear) { return clear > 0.0 ? flux / clear : 1.0; }
+
+/// Returns the layers in a beam [per unit beam]. @param beams  of each layer.
+std::vector<CloudLayerFluxes> LitBy(std::vector<CloudLayerFluxes> layers,
+                                    const std::vector<Spectrum>& beams, std::size_t band) {
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    layers[i].sun_up *= static_cast<double>(beams[i][band]);
+    layers[i].sun_down *= static_cast<double>(beams[i][band]);
+  }
+  return layers;
 }
 
 }  // namespace
@@ -68,14 +82,14 @@ float CloudsOnRay::DiskLeft() const {
 LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
                      const SolvedAir& air, const DistantLight& light)
     : clouds_(std::move(clouds)), geometry_(geometry), air_(air), light_(light) {
-  std::vector<std::shared_ptr<const CloudSunMap>> maps;
+  std::vector<std::shared_ptr<const CloudSunDepths>> suns;
   double highest_m = 0.0;
   for (std::size_t i = 0; i < layers(); ++i) {
-    // The map lives as long as the solution.
-    maps.emplace_back(clouds_, &Layer(i).sun_map());
+    // The depths live as long as the solution.
+    suns.emplace_back(clouds_, &Layer(i).sun());
     highest_m = std::max(highest_m, RangeOf(i).high_m);
   }
-  shadow_ = std::make_shared<const CloudShadow>(std::move(maps), highest_m, geometry.radius_m());
+  shadow_ = std::make_shared<const CloudShadow>(std::move(suns), highest_m, geometry.radius_m());
   FindExchange();
 }
 
@@ -84,27 +98,44 @@ AltitudeRange LitClouds::RangeOf(std::size_t layer) const {
   return {field.base_altitude_m(), field.top_altitude_m()};
 }
 
+Spectrum LitClouds::MeanBeam(double altitude_m, std::size_t of_layer) const {
+  const LocalLight sun = LocalLightAt(geometry_, {0.0, 0.0, altitude_m}, light_);
+  double left = sun.visible_fraction;
+  for (std::size_t other = 0; other < layers(); ++other) {
+    if (other != of_layer) left *= Layer(other).sun().MeanTransmittance(altitude_m);
+  }
+  return static_cast<float>(left) * air_.BeamLeft(altitude_m, sun.mu_s_effective);
+}
+
 void LitClouds::FindExchange() {
   const std::size_t bands = air_.bands();
-  std::vector<CloudLayerFluxes> fluxes;
-  for (const CloudLight& layer : clouds_->light) fluxes.push_back(FluxesOf(layer));
+  std::vector<CloudLayerFluxes> grey;
+  std::vector<Spectrum> beams;
+  for (std::size_t i = 0; i < layers(); ++i) {
+    grey.push_back(FluxesOf(Layer(i)));
+    beams.push_back(MeanBeam(MiddleOf(i), i));
+  }
+  const std::vector<Spectrum> no_beams(layers(), Spectrum(bands));
   const double top_m = shadow_->highest_cloud_m();
-  const LocalLight sun = LocalLightAt(geometry_, {0.0, 0.0, top_m}, light_);
-  const Spectrum sky = air_.multiple_scattering().Irradiance(top_m, sun.mu_s_for_air, 1.0, 1.0);
-  const auto onto_level =
-      static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
-  const Spectrum beam = onto_level * air_.BeamLeft(top_m, sun.mu_s_effective);
+  const LocalLight above = LocalLightAt(geometry_, {0.0, 0.0, top_m}, light_);
+  const LocalLight below = LocalLightAt(geometry_, {0.0, 0.0, 0.0}, light_);
+  const Spectrum sky = air_.multiple_scattering().Irradiance(top_m, above.mu_s_for_air, 1.0, 1.0);
+  const double sine = std::max(below.mu_s_effective, 0.0);
+  const Spectrum direct = static_cast<float>(sine) * MeanBeam(0.0, layers());
+  const Spectrum clear_direct =
+      static_cast<float>(sine * below.visible_fraction) * air_.BeamLeft(0.0, below.mu_s_effective);
   sky_above_.assign(layers(), Spectrum(bands));
   ground_below_ = sky_above_;
   sky_left_.assign(layers() + 1, Spectrum(bands));
-  sun_added_ = sky_left_;
+  diffuse_ = sun_added_ = sky_left_;
   for (std::size_t band = 0; band < bands; ++band) {
     const double albedo = air_.medium().ground_albedo[band];
-    const double flux = static_cast<double>(beam[band]);
-    const auto all =
-        FluxesBetween(fluxes, {.down = static_cast<double>(sky[band]), .direct = flux}, albedo);
-    const auto of_sky = FluxesBetween(fluxes, {.down = 1.0}, albedo);
-    const auto of_sun = FluxesBetween(fluxes, {.direct = flux}, albedo);
+    const auto from_sky = static_cast<double>(sky[band]);
+    const auto on_ground = static_cast<double>(direct[band]);
+    const auto lit = LitBy(grey, beams, band), unlit = LitBy(grey, no_beams, band);
+    const auto all = FluxesBetween(lit, {from_sky, on_ground}, albedo);
+    const auto of_sky = FluxesBetween(unlit, {.sky = 1.0}, albedo);
+    const auto of_sun = FluxesBetween(lit, {.direct_on_ground = on_ground}, albedo);
     for (std::size_t i = 0; i < layers(); ++i) {
       sky_above_[i][band] = static_cast<float>(all[i + 1].down / kPi);
       ground_below_[i][band] = static_cast<float>(all[i].up / kPi);
@@ -112,17 +143,50 @@ void LitClouds::FindExchange() {
       sun_added_[i][band] = static_cast<float>(of_sun[i].down);
     }
     sky_left_.back()[band] = 1.0F;
+    const InterfaceFluxes clear =
+        FluxesBetween({}, {from_sky, static_cast<double>(clear_direct[band])}, albedo).front();
+    for (std::size_t i = 0; i <= layers(); ++i)
+      diffuse_[i][band] = static_cast<float>(Ratio(all[i].down + all[i].up, clear.down + clear.up));
   }
+}
+
+double LitClouds::MiddleOf(std::size_t layer) const {
+  return 0.5 * (RangeOf(layer).low_m + RangeOf(layer).high_m);
+}
+
+std::size_t LitClouds::InterfaceAt(double altitude_m) const {
+  std::size_t interface = 0;
+  while (interface < layers() && MiddleOf(interface) < altitude_m) ++interface;
+  return interface;
+}
+
+std::vector<DiffuseStretch> LitClouds::DiffuseInAir(const glm::dvec3& origin,
+                                                    const glm::dvec3& direction) const {
+  constexpr double kEndless_m = std::numeric_limits<double>::infinity(), kBeyond_m = 1000.0;
+  const double radius_m = geometry_.radius_m();
+  const bool falls = glm::dot(direction, geometry_.UpAt(origin)) < 0.0;
+  const auto grounds = CrossingsOf(0.0, origin, direction, kEndless_m, radius_m);
+  const double length_m = falls && !grounds.empty() ? grounds.front() : kEndless_m;
+  std::vector<double> ends_m{kEndless_m};
+  for (std::size_t i = 0; i < layers(); ++i) {
+    const auto crossed = CrossingsOf(MiddleOf(i), origin, direction, length_m, radius_m);
+    ends_m.insert(ends_m.end(), crossed.begin(), crossed.end());
+  }
+  std::sort(ends_m.begin(), ends_m.end());
+  std::vector<DiffuseStretch> stretches;
+  double begin_m = 0.0;
+  for (const double end_m : ends_m) {
+    const double within_m = end_m < kEndless_m ? 0.5 * (begin_m + end_m) : begin_m + kBeyond_m;
+    const double altitude_m = geometry_.AltitudeOf(origin + within_m * direction);
+    stretches.push_back({end_m, diffuse_[InterfaceAt(altitude_m)]});
+    begin_m = end_m;
+  }
+  return stretches;
 }
 
 SkyThroughMedia LitClouds::SkyOnSurface(double altitude_m, double cos_up,
                                         SkyThroughMedia above) const {
-  const auto is_below = [&](std::size_t layer) {
-    const AltitudeRange range = RangeOf(layer);
-    return 0.5 * (range.low_m + range.high_m) < altitude_m;
-  };
-  std::size_t interface = 0;
-  while (interface < layers() && is_below(interface)) ++interface;
+  const std::size_t interface = InterfaceAt(altitude_m);
   const auto seen = static_cast<float>(0.5 * (1.0 + cos_up));
   above.added = sky_left_[interface] * above.added + seen * sun_added_[interface];
   above.left = sky_left_[interface] * above.left;

@@ -9,15 +9,24 @@
 //   L += T_i A (E_beam sun_i + L_sky sky_i + L_ground ground_i)
 //
 // Clouds stand in the air as screens at the mean distance of their light, which the air in front dims
-// and veils. Not modelled:
+// and veils. Light that the air scatters more than once is that of a clear sky times
+//
+//   (d + u) / (d' + u')
+//
+// with the mean fluxes d down and u up at the interface below, between or above layers, and those d'
+// and u' without clouds: its directions are those of the clear sky.
+//
+// A sun below 3 degrees stands over a round planet: its beams are followed for kFarthestShade_m,
+// clouds see it longer than the ground, and light from below lights them. Light of higher orders is
+// that of the sun's height over the place of the scene.
+//
+// Not modelled:
 //
 //   - skylight and light from the ground that differ with direction or place under a field;
-//   - the light of clouds on the air around them: light that the air scatters more than once is that
-//     of a clear sky;
 //   - lamps and towns as sources;
 //   - clouds in the mirror of water, which shows the clear sky;
-//   - a beam less than kLowestCloudSun_deg high: strength and colour are those of the lower sun, the
-//     direction is not.
+//   - mountains in the way of beams to clouds, and clouds more than kFarthestShade_m away towards a
+//     low sun.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +38,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/solved_air.h"
+#include "renderer/illumination/aerial_perspective.h"
 #include "renderer/illumination/distant_light.h"
 #include "renderer/lit_clouds/cloud_chords.h"
 #include "renderer/lit_clouds/cloud_layers.h"
@@ -108,8 +118,16 @@ class LitClouds {
   [[nodiscard]] SkyThroughMedia SkyOnSurface(double altitude_m, double cos_up,
                                              SkyThroughMedia above) const;
 
+  /// Returns the diffuse light in the air along a ray, below, between and above layers: the mean
+  /// fluxes down and up there, relative to those without clouds.
+  [[nodiscard]] std::vector<DiffuseStretch> DiffuseInAir(const glm::dvec3& origin,
+                                                         const glm::dvec3& direction) const;
+
  private:
   void FindExchange();
+  /// Returns the mean beam on a plane behind other layers, per unit solar irradiance.
+  /// @param of_layer  which does not dim the beam; the number of layers: none.
+  [[nodiscard]] Spectrum MeanBeam(double altitude_m, std::size_t of_layer) const;
   [[nodiscard]] CloudScreen Screen(std::size_t layer, const CloudRayLight& grey,
                                    const glm::dvec3& point, double distance_m) const;
   /// Returns the transmittance to the light of the layers other than one.
@@ -119,6 +137,10 @@ class LitClouds {
   [[nodiscard]] const CloudLight& Layer(std::size_t layer) const { return clouds_->light[layer]; }
   /// Returns the altitudes of a layer.
   [[nodiscard]] AltitudeRange RangeOf(std::size_t layer) const;
+  /// Returns the altitude that parts the light below a layer from that above it.
+  [[nodiscard]] double MiddleOf(std::size_t layer) const;
+  /// Returns the number of the interface at an altitude.
+  [[nodiscard]] std::size_t InterfaceAt(double altitude_m) const;
 
   std::shared_ptr<const SolvedClouds> clouds_;
   const SceneGeometry& geometry_;
@@ -130,6 +152,7 @@ class LitClouds {
   /// Light below each interface: per unit skylight from above all layers, and by the sun's beam
   /// alone, per unit solar irradiance.
   std::vector<Spectrum> sky_left_, sun_added_;
+  std::vector<Spectrum> diffuse_;  // factor in the air at each interface
 };
 
 }  // namespace alpenglow::renderer

@@ -79,7 +79,8 @@ PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<const SceneGrou
       moonlight_(other ? other->moonlight_ : std::make_shared<RecentSunlight>(*ground_)),
       clouds_(other ? other->clouds_
                     : std::make_shared<CloudsByTime>(scene_,
-                                                     GroundHeightUnder(*ground_, scene_.place))),
+                                                     GroundHeightUnder(*ground_, scene_.place),
+                                                     medium_.planet_radius_m)),
       material_(scene_.ground, ColourDrape::Of(scene_, *ground_), medium_.wavelengths_nm),
       terrain_message_(MessageOf(*ground_, material_)),
       air_(medium_, {*ground_, geometry_, lamps_, *horizons_, material_}),

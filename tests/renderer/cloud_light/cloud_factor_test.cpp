@@ -37,7 +37,7 @@ struct FactorCase {
   CloudField field = tests::SphereClouds(0.05);
   CloudScatterers scatterers{CloudPhases(tests::LobeOf(0.85)), 1.0};
   std::shared_ptr<const CloudOptics> optics;
-  CloudSunMap map;
+  CloudSunDepths map;
   CloudMomentSolver solver;
   CloudMoments sun, sky;
   CloudGather gather;

@@ -39,7 +39,7 @@ struct GatherCase {
 
   CloudField field;
   std::shared_ptr<const CloudOptics> optics;
-  CloudSunMap map;
+  CloudSunDepths map;
   CloudMomentSolver solver;
   CloudMoments sun, sky, ground;
   CloudGather gather;

@@ -196,7 +196,7 @@ TEST(CloudLight, RefusesWhatIsOutOfRange) {
   const CloudField field = tests::SphereClouds(0.05);
   const CloudScatterers scatterers{CloudPhases(tests::LobeOf(0.85)), 1.0};
   const CloudSurroundings noon{SunAbove(35.0)};
-  EXPECT_THROW(CloudLight(field, scatterers, {SunAbove(2.0)}), InputError);
+  EXPECT_THROW(CloudLight(field, scatterers, {SunAbove(-5.0)}), InputError);
   EXPECT_THROW(CloudLight(field, scatterers, {SunAbove(35.0), 1.5}), InputError);
   EXPECT_THROW(CloudLight(field, scatterers, noon, {.moments = {.cell_m = 1.0}}), InputError);
   EXPECT_THROW(CloudLight(field, scatterers, noon, {.factor = {.paths_per_ray = 0}}), InputError);

@@ -111,11 +111,43 @@ TEST(CloudLowSun, TransmittanceByPathsFollowsTheSameBeam) {
   EXPECT_GT(exact, 0.003);
 }
 
+// The beam of a sun at -1 degree leaves the layer at once, and returns 222 km away.
+TEST(CloudLowSun, BeamsEndWhereTheyAreToldTo) {
+  const CloudField field = tests::PlaneLayer(0.04);
+  const glm::dvec3 base(0.0, 0.0, 1000.0);
+  EXPECT_EQ(CloudLowSun(field, LowSunAt(-1.0), {.farthest_m = 120e3}).OpticalDepth(base), 0.0);
+  EXPECT_GT(CloudLowSun(field, LowSunAt(-1.0)).OpticalDepth(base), 1.0);
+}
+
+TEST(CloudLowSun, PeriodicDepthsAreThoseOverThePlace) {
+  const CloudField field = tests::SphereClouds(0.004);
+  const CloudLowSun sun(field, LowSunAt(1.0));
+  const glm::dvec3 here(0.0, 0.0, 1100.0), period(1280.0, 0.0, 0.0);
+  EXPECT_DOUBLE_EQ(sun.OpticalDepthAsAtPlace(here), sun.OpticalDepth(here));
+  EXPECT_NEAR(sun.OpticalDepthAsAtPlace(here + 50.0 * period), sun.OpticalDepth(here), 1e-6);
+  const double degrees =
+      50.0 * 1280.0 * std::cos(20.0 * kRadiansPerDegree) / kRadius_m / kRadiansPerDegree;
+  EXPECT_NEAR(sun.ToSunAt(here + 50.0 * period).z, std::sin((1.0 + degrees) * kRadiansPerDegree),
+              1e-9);
+}
+
+// A layer is above the points or below them.
+TEST(CloudSunDepths, MeanOfAPlaneLayerIsThatOfItsBeams) {
+  const CloudField field = tests::PlaneLayer(0.04);
+  const CloudSunDepths low(field, LowSunAt(2.0)), high(field, LowSunAt(30.0));
+  for (const double altitude_m : {100.0, 1000.0, 2000.0}) {
+    const glm::dvec3 point(10.0, 20.0, altitude_m);
+    EXPECT_NEAR(low.MeanTransmittance(altitude_m), low.Transmittance(point), 1e-4)
+        << "the plane is not level at the point";
+    EXPECT_NEAR(high.MeanTransmittance(altitude_m), high.Transmittance(point), 1e-6);
+  }
+}
+
 TEST(CloudSunDepths, MapAndBeamsAgreeWhereTheyMeet) {
   const CloudField field = tests::SphereClouds(0.05);
   const CloudSunDepths map(field, LowSunAt(3.0)), beams(field, LowSunAt(2.99));
-  EXPECT_TRUE(map.has_map());
-  EXPECT_FALSE(beams.has_map());
+  EXPECT_NE(map.map(), nullptr);
+  EXPECT_EQ(beams.map(), nullptr);
   EXPECT_GT(map.bytes(), 0U);
   double by_map = 0.0, by_beams = 0.0;
   constexpr int kPoints = 4000;
@@ -132,12 +164,13 @@ TEST(CloudSunDepths, MapAndBeamsAgreeWhereTheyMeet) {
 
 TEST(CloudLowSun, RefusesSunsAndOptionsOutOfRange) {
   const CloudField field = tests::SphereClouds(0.05);
-  EXPECT_THROW(CloudLowSun(field, LowSunAt(-2.2)), InputError);
+  EXPECT_THROW(CloudLowSun(field, LowSunAt(-4.1)), InputError);
   EXPECT_THROW(CloudLowSun(field, LowSunAt(10.1)), InputError);
   EXPECT_THROW(CloudLowSun(field, {1.0, 0.0, 1.0}), InputError);
   EXPECT_THROW(CloudLowSun(field, LowSunAt(1.0), {.planet_radius_m = 1.0}), InputError);
   EXPECT_THROW(CloudLowSun(field, LowSunAt(1.0), {.step_m = std::nan("")}), InputError);
-  EXPECT_THROW(CloudSunDepths(field, LowSunAt(-3.0)), InputError);
+  EXPECT_THROW(CloudLowSun(field, LowSunAt(1.0), {.farthest_m = 5e5}), InputError);
+  EXPECT_THROW(CloudSunDepths(field, LowSunAt(-5.0)), InputError);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(CloudMoments, LightOfTheSunLeavesConservativeClouds) {
   const CloudField field = tests::SphereClouds(0.05);
   const CloudMomentSolver solver(field, OpticsOfMoments(field), {.tolerance = 1e-4});
   for (const double elevation_deg : {60.0, 35.0, 12.0}) {
-    const CloudSunMap map(field, SunOfMoments(elevation_deg));
+    const CloudSunDepths map(field, SunOfMoments(elevation_deg));
     const SolvedCloudMoments sun = solver.Sun(map);
     EXPECT_LT(sun.residual, 1e-4);
     const double sum = (sun.up_at_top + sun.down_at_base) / map.to_sun().z;
@@ -74,7 +74,7 @@ TEST(CloudMoments, PlaneLayersHaveTheFluxesOfTracedPaths) {
   // 80, 40 and 20 m; a smaller tolerance changes 0.003.
   for (const auto [depth, bound] : {Case{0.5, 0.015}, Case{4.0, 0.015}, Case{32.0, 0.06}}) {
     const CloudField layer = tests::PlaneLayer(depth);
-    const CloudSunMap map(layer, SunOfMoments(35.0));
+    const CloudSunDepths map(layer, SunOfMoments(35.0));
     const CloudMomentSolver solver(layer, OpticsOfMoments(layer));
     const SolvedCloudMoments sun = solver.Sun(map);
     const CloudPathTracer tracer(layer, {CloudPhases(tests::LobeOf(0.85)), 1.0}, {map.to_sun()});
@@ -94,7 +94,7 @@ TEST(CloudMoments, SpheresHaveTheFluxesOfTracedPaths) {
   const CloudField field = tests::SphereClouds(0.05);
   for (const double albedo : {1.0, 0.9}) {
     const CloudMomentSolver solver(field, OpticsOfMoments(field, albedo), {.cell_m = 40.0});
-    const CloudSunMap map(field, SunOfMoments(35.0));
+    const CloudSunDepths map(field, SunOfMoments(35.0));
     const SolvedCloudMoments sun = solver.Sun(map);
     const CloudPathTracer tracer(field, {CloudPhases(tests::LobeOf(0.85)), albedo}, {map.to_sun()});
     const CloudColumnFluxes traced =
@@ -116,7 +116,7 @@ TEST(CloudMoments, FluxesThroughClearAirAreThoseOfItsSources) {
   const CloudMomentSolver solver(field, OpticsOfMoments(field));
   EXPECT_NEAR(solver.Sky().down_at_base, kPi, 1e-6);
   EXPECT_EQ(solver.Sky().up_at_top, 0.0);
-  const CloudSunMap map(field, SunOfMoments(35.0));
+  const CloudSunDepths map(field, SunOfMoments(35.0));
   EXPECT_NEAR(solver.Sun(map).down_at_base, 0.0, 1e-6);
   for (const float moment : solver.Sky().moments.At({0.0, 0.0, 5000.0})) EXPECT_EQ(moment, 0.0F);
 }
@@ -146,7 +146,7 @@ std::vector<CloudHarmonics> AllMoments(const SolvedCloudMoments& solved) {
 
 TEST(CloudMoments, AreTheSameForAnyNumberOfThreads) {
   const CloudField field = tests::SphereClouds(0.05);
-  const CloudSunMap map(field, SunOfMoments(35.0));
+  const CloudSunDepths map(field, SunOfMoments(35.0));
   tests::EqualForAnyNumberOfThreads([&] {
     const CloudMomentSolver solver(field, OpticsOfMoments(field));
     return AllMoments(solver.Sun(map));

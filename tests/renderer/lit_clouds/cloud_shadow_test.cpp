@@ -16,9 +16,9 @@ const glm::dvec3 kBeam = glm::normalize(glm::dvec3(0.6, 0.3, 0.5));
 
 const CloudShadow& ShadowOfSpheres() {
   static const CloudShadow kShadow = [] {
-    const CloudField field = tests::SphereClouds(0.01);
-    return CloudShadow({std::make_shared<const CloudSunMap>(field, kBeam)}, field.top_altitude_m(),
-                       kSphere_m);
+    static const CloudField field = tests::SphereClouds(0.01);
+    return CloudShadow({std::make_shared<const CloudSunDepths>(field, kBeam)},
+                       field.top_altitude_m(), kSphere_m);
   }();
   return kShadow;
 }

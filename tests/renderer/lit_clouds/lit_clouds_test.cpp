@@ -9,6 +9,8 @@
 #include <limits>
 
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "renderer/clouds/cloud_generator.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/solved_media.h"
@@ -19,15 +21,18 @@ namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-/// Clouds over the bare planet in air of three bands, under a sun 40 degrees high.
+const glm::dvec3 kHighSun = glm::normalize(glm::dvec3(0.766, 0.0, 0.643));
+
+/// Clouds over the bare planet in air of three bands, under a sun 40 degrees high or another one.
 struct CloudStage {
-  explicit CloudStage(CloudField field)
-      : clouds([&] {
+  explicit CloudStage(CloudField field, const glm::dvec3& to_sun = kHighSun)
+      : sun(SunOf(air, to_sun)), clouds([&] {
           auto layers = std::make_shared<CloudLayers>();
           layers->push_back({std::move(field), false});
           auto solved = std::make_shared<SolvedClouds>();
           CloudLightOptions options;
           options.factor.rays = 0;
+          options.low_sun.farthest_m = kFarthestShade_m;
           solved->light.emplace_back(layers->front().field,
                                      CloudScatterers{CloudPhases(tests::LobeOf(0.8))},
                                      CloudSurroundings{.to_sun = sun.direction.seen}, options);
@@ -43,16 +48,22 @@ struct CloudStage {
   }();
   SceneGround ground = LoadGround(scene);
   SceneGeometry geometry{ground, air.medium(), false};
-  DistantLight sun = [this] {
-    DistantLight light{LightSource::kSun,
-                       Unrefracted(glm::normalize(glm::dvec3(0.766, 0.0, 0.643))), 0.00465,
-                       Spectrum(air.bands())};
-    std::ranges::fill(light.irradiance.values(), 1.0F);
-    return light;
-  }();
+  DistantLight sun;
   std::shared_ptr<const SolvedClouds> clouds;
 
   [[nodiscard]] LitClouds Lit() const { return {clouds, geometry, air, sun}; }
+  static DistantLight SunOf(const SolvedAir& air, const glm::dvec3& to_sun) {
+    DistantLight light{LightSource::kSun, Unrefracted(to_sun), 0.00465, Spectrum(air.bands())};
+    std::ranges::fill(light.irradiance.values(), 1.0F);
+    return light;
+  }
+  /// Returns a value of the bluest band over that of the reddest.
+  [[nodiscard]] double Blueness(const Spectrum& light) const {
+    const auto& nm = air.medium().wavelengths_nm;
+    const auto [blue, red] = std::ranges::minmax_element(nm);
+    return static_cast<double>(light[static_cast<std::size_t>(blue - nm.begin())]) /
+           static_cast<double>(light[static_cast<std::size_t>(red - nm.begin())]);
+  }
 };
 
 const CloudStage& DeckStage() {
@@ -113,6 +124,116 @@ TEST(LitClouds, LightOnTheGroundIsThatOfTheDeckAbove) {
     const double on_ground = static_cast<double>(sky.left[band] * clear[band] + sky.added[band]);
     EXPECT_NEAR(integral[band] / on_ground, 1.0, 0.06) << band;
   }
+}
+
+glm::dvec3 SunOverClouds(double elevation_deg) {
+  const double e = elevation_deg * kRadiansPerDegree, a = 20.0 * kRadiansPerDegree;
+  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+}
+
+/// The spheres 4 km higher.
+class HighSpheres : public CloudShape {
+ public:
+  static constexpr double kHigher_m = 4000.0;
+  [[nodiscard]] double SignedDepth_m(const glm::dvec3& point) const override {
+    return spheres_.SignedDepth_m(point - glm::dvec3(0.0, 0.0, kHigher_m));
+  }
+  [[nodiscard]] bool MayHoldCloud(const glm::dvec3&, const glm::dvec3&) const override {
+    return true;
+  }
+
+ private:
+  tests::SphereShape spheres_{true};
+};
+
+CloudField HighClouds() {
+  const CloudLattice lattice{
+      {64, 64, 24}, glm::dvec3(20.0), {0.0, 0.0, 1000.0 + HighSpheres::kHigher_m}, true};
+  return {lattice, HighSpheres(), tests::EvenMatter(0.05, 20.0)};
+}
+
+/// Returns the mean light of the spheres, seen from below.
+Spectrum GlowOfSpheres(const CloudStage& stage) {
+  const LitClouds lit = stage.Lit();
+  Spectrum sum(stage.air.bands());
+  for (int i = 1; i <= 400; ++i) {
+    const glm::dvec3 eye(1280.0 * Halton(i, 2), 1280.0 * Halton(i, 3), 0.0);
+    for (const CloudScreen& screen : lit.Along(eye, {0.0, 0.0, 1.0}, kEndless).screens)
+      sum = sum + screen.radiance;
+  }
+  return sum;
+}
+
+// Over the ground the sun has set. Clouds at 5000 to 5480 m see it until -2.3 to -2.6 degrees.
+TEST(LitClouds, CloudsGlowRedFromBelowAfterSunset) {
+  const CloudStage glowing(HighClouds(), SunOverClouds(-1.5));
+  const CloudStage dark(HighClouds(), SunOverClouds(-2.9));
+  const Spectrum glow = GlowOfSpheres(glowing), shade = GlowOfSpheres(dark);
+  EXPECT_GT(glow[2], 3.0F * shade[2]) << "the reddest band";
+  const SkyThroughMedia on_ground =
+      glowing.Lit().SkyOnSurface(0.0, 1.0, SkyThroughMedia::Clear(glowing.air.bands()));
+  EXPECT_GT(on_ground.added[2], 0.0F);
+  EXPECT_LT(glowing.Blueness(on_ground.added), 0.1) << "light of clouds on the ground";
+}
+
+TEST(LitClouds, LightIsContinuousAtTheLowestSunOfAMap) {
+  const CloudStage map(tests::SphereClouds(0.05), SunOverClouds(3.0001));
+  const CloudStage beams(tests::SphereClouds(0.05), SunOverClouds(2.9999));
+  const Spectrum by_map = GlowOfSpheres(map), by_beams = GlowOfSpheres(beams);
+  for (std::size_t band = 0; band < by_map.size(); ++band)
+    EXPECT_NEAR(by_map[band] / by_beams[band], 1.0F, 0.03F) << "cells of the map are 20 m wide";
+}
+
+/// Mean light on level ground.
+struct LightOnGround {
+  Spectrum sky, all;
+};
+/// @param direct_left  transmittance of clouds for the sun.
+LightOnGround LightUnder(const SolvedAir& air, const SkyThroughMedia& sky, double direct_left) {
+  const double sine = kHighSun.z;
+  const Spectrum diffuse =
+      sky.left * air.multiple_scattering().Irradiance(0.0, sine, 1.0, 1.0) + sky.added;
+  return {diffuse, diffuse + static_cast<float>(sine * direct_left) * air.BeamLeft(0.0, sine)};
+}
+
+// Droplets scatter all colours alike: under a closing deck all light falls, and the light of the sky
+// loses its blue. The air below the deck scatters this light.
+TEST(LitClouds, LightFallsAndTurnsGreyWithCover) {
+  const SolvedAir& air = tests::ThreeBandAir();
+  const SkyThroughMedia clear = SkyThroughMedia::Clear(air.bands());
+  LightOnGround last = LightUnder(air, clear, 1.0);
+  Spectrum last_factor = clear.left;
+  for (const double cover : {0.3, 0.6, 0.9}) {
+    CloudOptions options = DefaultCloudOptions(CloudGenus::kStratocumulus);
+    options.cover = cover;
+    options.period_m = kPeriodStep_m;
+    const CloudStage stage(MakeCloudField(options));
+    const LitClouds lit = stage.Lit();
+    const LightOnGround light = LightUnder(air, lit.SkyOnSurface(0.0, 1.0, clear),
+                                           stage.clouds->light.front().sun().MeanTransmittance());
+    EXPECT_LT(light.all[1], last.all[1]) << cover;
+    EXPECT_LT(stage.Blueness(light.sky), stage.Blueness(last.sky)) << cover;
+    const auto stretches = lit.DiffuseInAir({0.0, 0.0, 2.0}, {0.0, 0.0, 1.0});
+    ASSERT_EQ(stretches.size(), 2U);
+    EXPECT_LT(stage.Blueness(stretches[0].factor), stage.Blueness(last_factor)) << cover;
+    last = light;
+    last_factor = stretches[0].factor;
+  }
+}
+
+TEST(LitClouds, AirHasTheLightOfItsSideOfTheLayer) {
+  const LitClouds lit = DeckStage().Lit();
+  const glm::dvec3 east(1.0, 0.0, 0.0);
+  const auto below = lit.DiffuseInAir({0.0, 0.0, 100.0}, {0.0, 0.0, -1.0});
+  const auto above = lit.DiffuseInAir({0.0, 0.0, 3000.0}, {0.0, 0.0, 1.0});
+  ASSERT_EQ(below.size(), 1U);
+  ASSERT_EQ(above.size(), 1U);
+  EXPECT_GT(above[0].factor[0], 1.0F) << "the deck is brighter than the ground";
+  const auto across = lit.DiffuseInAir({0.0, 0.0, 100.0}, east);
+  ASSERT_EQ(across.size(), 2U) << "the planet bends away below the ray";
+  EXPECT_NEAR(across[0].end_m, std::sqrt(2.0 * 6.36e6 * 1100.0), 200.0) << "up to 1200 m";
+  EXPECT_EQ(across[0].factor[0], below[0].factor[0]);
+  EXPECT_EQ(across[1].factor[0], above[0].factor[0]);
 }
 
 TEST(LitClouds, SurfacesAboveTheLayerKeepTheClearSky) {
