@@ -109,6 +109,8 @@ class AirTo {
       ray_.length_m = through.length_m;
       ray_.passes_ground = true;  // terrain may lie below altitude 0
     }
+    if (source.clouds && frame.Has(Effect::kCloudGlow))
+      diffuse_ = source.clouds->DiffuseInAir(from, direction_);
     if (!is_broken_) return;
     const RayExtent extent =
         ExtentOf(ray_, geometry.radius_m(), frame.scene().medium().atmosphere_height_m);
@@ -136,7 +138,8 @@ class AirTo {
         .sky = frame_.Has(Effect::kFineAir) ? nodes : std::max(nodes / 2, 2),
         .higher_orders = frame_.Has(Effect::kMultipleScattering),
         .polarised = frame_.IsPolarised(),
-        .nu_seen = nu_seen_};
+        .nu_seen = nu_seen_,
+        .diffuse = diffuse_};
     AirAlongRay air =
         is_broken_ ? in.aerial.Along(ray, path_, sampling) : in.aerial.Along(ray, sampling);
     if (air.polarised) {
@@ -156,6 +159,7 @@ class AirTo {
   glm::dvec3 up_;
   ViewRay ray_;
   SunlitPath path_;
+  std::vector<DiffuseStretch> diffuse_;
 };
 
 /// Returns the light of the air that arrives through media.
