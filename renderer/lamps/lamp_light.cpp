@@ -139,6 +139,22 @@ Spectrum LampLight::InAir(const LampPlan& plan, int x, int y, const LampRayEnd& 
   return sum;
 }
 
+LampNodes LampLight::FarFrom(const glm::dvec3& point) const {
+  LampNodes open = state_->tree.roots(), found;
+  while (!open.empty()) {
+    const std::uint32_t number = open.back();
+    open.pop_back();
+    const LampNode& node = state_->tree.nodes()[number];
+    const double distance_m = glm::length(node.light.lamp.position_m - point);
+    if (!node.children || node.radius_m <= kFarCluster * distance_m) {
+      found.push_back(number);
+    } else {
+      open.insert(open.end(), node.children->begin(), node.children->end());
+    }
+  }
+  return found;
+}
+
 Spectrum LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) const {
   Spectrum sum(state_->stage.bands());
   for (const std::uint32_t index : lamps) {

@@ -140,6 +140,10 @@ class LampLight {
 
   /// Returns the numbers of all lamps of the scene.
   [[nodiscard]] LampNodes All() const;
+  /// Returns nodes for all lamps as a point far away sees them: lamps of a cluster lie within
+  /// kFarCluster of its distance.
+  [[nodiscard]] LampNodes FarFrom(const glm::dvec3& point) const;
+  static constexpr double kFarCluster = 0.2;
 
  private:
   struct State;

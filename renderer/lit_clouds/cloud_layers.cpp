@@ -17,15 +17,11 @@ constexpr double kPhase_nm = 550.0;
 /// Sun and moon of two frames.
 constexpr std::size_t kKept = 4;
 
-/// Returns the direction of the beam in a field: that of the light, but not below the lowest one,
-/// which no cloud sees.
+/// Returns the direction of the beam in a field: that of the light. No cloud sees a light below the
+/// lowest one; one in the zenith is solved fastest.
 glm::dvec3 BeamDirection(const glm::dvec3& to_light) {
-  const double lowest = std::sin(kLowestCloudLight_deg * kPi / 180.0);
-  if (to_light.z >= lowest) return to_light;
-  const double across = std::hypot(to_light.x, to_light.y),
-               level = std::sqrt(1.0 - lowest * lowest);
-  if (across == 0.0) return {level, 0.0, lowest};  // straight below: any azimuth
-  return {level / across * to_light.x, level / across * to_light.y, lowest};
+  const bool is_seen = to_light.z >= std::sin(kLowestCloudLight_deg * kPi / 180.0);
+  return is_seen ? to_light : glm::dvec3(0.0, 0.0, 1.0);
 }
 
 CloudLightOptions LightOptions(double planet_radius_m) {

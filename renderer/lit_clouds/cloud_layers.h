@@ -19,7 +19,8 @@ namespace alpenglow::renderer {
 /// Layers of clouds at one time, from the lowest to the highest base.
 using CloudLayers = std::vector<SceneCloudField>;
 
-/// Layers under one distant light. The light is as high as kLowestCloudLight_deg at least.
+/// Layers under one distant light. A light below kLowestCloudLight_deg, which no cloud sees, counts as
+/// one in the zenith.
 struct SolvedClouds {
   std::shared_ptr<const CloudLayers> layers;
   std::vector<CloudLight> light;  // of each layer, over black ground

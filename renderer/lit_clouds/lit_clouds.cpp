@@ -54,6 +54,7 @@ void CloudsOnRay::Add(const CloudScreen& screen) {
         (taken * near.distance_m + taken_behind * screen.distance_m) / (taken + taken_behind);
   }
   near.radiance = near.radiance + near.transmittance * screen.radiance;
+  near.ground += near.transmittance * screen.ground;
   near.transmittance *= screen.transmittance;
 }
 
@@ -77,6 +78,21 @@ float CloudsOnRay::WeightedDistance_m() const {
 float CloudsOnRay::DiskLeft() const {
   const float scattered_too = transmittance();
   return scattered_too > 0.0F ? std::min(unscattered / scattered_too, 1.0F) : 0.0F;
+}
+
+Spectrum LampsOnClouds(const CloudsOnRay& clouds, const LampLight& lamps,
+                       const SceneGeometry& geometry, const glm::dvec3& origin,
+                       const glm::dvec3& direction, const std::function<Spectrum(double)>& left) {
+  Spectrum sum(left(0.0).size());
+  float past = 1.0F;
+  for (const CloudScreen& screen : clouds.screens) {
+    const glm::dvec3 point = origin + screen.distance_m * direction;
+    const glm::dvec3 down = -geometry.UpAt(point);
+    const Spectrum light = lamps.OnSurface(lamps.FarFrom(point), {point, point, down, down});
+    sum = sum + past * screen.ground / static_cast<float>(kPi) * (left(screen.distance_m) * light);
+    past *= screen.transmittance;
+  }
+  return sum;
 }
 
 LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
@@ -209,7 +225,8 @@ CloudScreen LitClouds::Screen(std::size_t layer, const CloudRayLight& grey, cons
                         air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   return {distance_m, static_cast<float>(grey.scaled_transmittance),
           static_cast<float>(grey.sun) * beam + static_cast<float>(grey.sky) * sky_above_[layer] +
-              static_cast<float>(grey.ground) * ground_below_[layer]};
+              static_cast<float>(grey.ground) * ground_below_[layer],
+          static_cast<float>(grey.ground)};
 }
 
 CloudsOnRay LitClouds::Along(const glm::dvec3& origin, const glm::dvec3& direction,

@@ -20,16 +20,20 @@
 // clouds see it longer than the ground, and light from below lights them. Light of higher orders is
 // that of the sun's height over the place of the scene.
 //
+// Lamps light clouds from below by the irradiance of a level surface there (LampsOnClouds).
+//
 // Not modelled:
 //
 //   - skylight and light from the ground that differ with direction or place under a field;
-//   - lamps and towns as sources;
+//   - lamplight that the ground reflects to clouds, and the height of clouds over towns of light
+//     pollution (night_light.h);
 //   - clouds in the mirror of water, which shows the clear sky;
 //   - mountains in the way of beams to clouds, and clouds more than kFarthestShade_m away towards a
 //     low sun.
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <memory>
@@ -40,6 +44,7 @@
 #include "lut/multiple_scattering/solved_air.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/illumination/distant_light.h"
+#include "renderer/lamps/lamp_light.h"
 #include "renderer/lit_clouds/cloud_chords.h"
 #include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/lit_clouds/cloud_shadow.h"
@@ -54,6 +59,7 @@ struct CloudScreen {
   double distance_m;    // mean distance of the light
   float transmittance;  // of this screen, with the light in the forward peak
   Spectrum radiance;    // without air and nearer screens, per unit solar irradiance [1/sr]
+  float ground = 0.0F;  // without air and nearer screens, for unit radiance from below
 };
 
 /// Clouds along a ray.
@@ -97,6 +103,14 @@ Spectrum CloudsOnRay::Dimmed(const Spectrum& whole, const Upto& upto) const {
   }
   return sum + left * (whole + -1.0F * before);
 }
+
+/// Returns the light of lamps that clouds on a ray scatter to its origin [W m^-2 sr^-1 nm^-1]. The
+/// irradiance of a level surface at a cloud, which looks down, counts as if it came evenly from below.
+/// @param left  returns the transmittance of air and other media up to a distance.
+[[nodiscard]] Spectrum LampsOnClouds(const CloudsOnRay& clouds, const LampLight& lamps,
+                                     const SceneGeometry& geometry, const glm::dvec3& origin,
+                                     const glm::dvec3& direction,
+                                     const std::function<Spectrum(double)>& left);
 
 /// Immutable; safe to use from many threads. Refers to geometry and air.
 class LitClouds {

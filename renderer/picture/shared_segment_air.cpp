@@ -271,6 +271,21 @@ void AddSource(const FrameContext& frame, const FrameLight& source, bool is_firs
   if (lit.polarised) rays.air.polarised = *rays.air.polarised + source.by_sun * *lit.polarised;
 }
 
+/// Returns the light of lamps that clouds scatter to the eye [W m^-2 sr^-1 nm^-1].
+Spectrum CloudsByLamps(const FrameContext& frame, const AirRay& through,
+                       const SharedSegmentAir& rays) {
+  const SceneGeometry& geometry = frame.scene().geometry();
+  const glm::dvec3& eye = frame.camera().eye();
+  const auto left = [&](double distance_m) {
+    ViewRay ray{geometry.AltitudeOf(eye),
+                std::clamp(glm::dot(through.direction, frame.limb().up()), -1.0, 1.0), 1.0, 0.0};
+    ray.length_m = distance_m;
+    return LeftByMedia(rays.pieces, distance_m, rays.media.size()) *
+           frame.over_ground().air.single_scattering().TransmittanceAlong(ray);
+  };
+  return LampsOnClouds(rays.clouds, frame.lamps(), geometry, eye, through.direction, left);
+}
+
 }  // namespace
 
 SharedSegmentAir SharedSegmentAir::Of(const Hit& hit, const glm::dvec3& direction,
@@ -348,7 +363,9 @@ void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
   const AirRay through = AirRayOf(frame, rays);
   rays.layers_left = UnmarchedLayers(frame, through.direction, through.length_m);
   rays.lamp_light = Spectrum(rays.media.size());
-  if (frame.plan().tiles.empty() || !frame.Has(Effect::kBeams)) return;
+  if (frame.plan().tiles.empty()) return;
+  if (frame.Has(Effect::kCloudGlow)) rays.lamp_light = CloudsByLamps(frame, through, rays);
+  if (!frame.Has(Effect::kBeams)) return;
   const auto upto = [&](double length_m) {
     return frame.lamps().InAir(frame.plan(), x, y,
                                {through.direction, std::min(length_m, through.length_m)},
@@ -359,7 +376,8 @@ void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
         rays.pieces, [&](double m) { return upto(std::min(m, length_m)); }, upto(length_m),
         Behind::kBodies);
   };
-  rays.lamp_light = rays.clouds.Dimmed(behind_bodies(through.length_m), behind_bodies);
+  rays.lamp_light =
+      rays.lamp_light + rays.clouds.Dimmed(behind_bodies(through.length_m), behind_bodies);
 }
 
 }  // namespace alpenglow::renderer

@@ -12,6 +12,7 @@
 #include "atmosphere/math/numerics.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/lamp_night.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/solved_media.h"
 #include "tests/fixtures/sphere_clouds.h"
@@ -244,6 +245,46 @@ TEST(LitClouds, SurfacesAboveTheLayerKeepTheClearSky) {
     EXPECT_EQ(sky.left[band], 1.0F);
     EXPECT_EQ(sky.added[band], 0.0F);
   }
+}
+
+// A thousand candelas below the second of two screens; air takes a few hundredths of the light, and
+// the glow of the air is little of it.
+TEST(LitClouds, LampsLightCloudsByTheInverseSquare) {
+  Scene scene = tests::NightScene();
+  scene.lights = {tests::LightAt(600.0, 0.0, 0.0, 1000.0)};
+  const tests::LampSite site(scene);
+  const SceneGeometry geometry(site.ground, site.medium, false);
+  Spectrum none(site.medium.wavelengths_nm.size()), half = none;
+  std::ranges::fill(half.values(), 0.5F);
+  CloudsOnRay clouds;
+  clouds.screens = {{400.0, 0.5F, none, 0.0F}, {1000.0, 0.2F, none, 0.6F}};
+  const glm::dvec3 eye = tests::kLampEye, direction(0.0, 0.6, 0.8);
+  const Spectrum light =
+      LampsOnClouds(clouds, site.light, geometry, eye, direction, [&](double) { return half; });
+  const glm::dvec3 away = site.PositionOf(scene.lights[0]) - (eye + 1000.0 * direction);
+  const double lux = 1000.0 * -away.z / std::pow(glm::length(away), 3);
+  EXPECT_NEAR(site.Luminance(light), 0.5 * 0.5 * 0.6 / kPi * lux, 0.2 * 0.15 / kPi * lux);
+  clouds.screens.back().ground = 0.0F;
+  const Spectrum dark =
+      LampsOnClouds(clouds, site.light, geometry, eye, direction, [&](double) { return half; });
+  EXPECT_EQ(site.Luminance(dark), 0.0);
+}
+
+// Lamps of a town of 2 km, seen from 4 km above its edge.
+TEST(LitClouds, FarLampsAreAsBrightAsAll) {
+  Scene scene = tests::NightScene();
+  for (int i = 1; i <= 400; ++i) {
+    scene.lights.push_back(
+        tests::LightAt(2000.0 * Halton(i, 2), 2000.0 * Halton(i, 3), 0.0, 1000.0));
+  }
+  const tests::LampSite site(scene);
+  const glm::dvec3 point(0.0, 0.0, 4000.0), down(0.0, 0.0, -1.0);
+  const LampNodes far = site.light.FarFrom(point);
+  EXPECT_LT(far.size(), 40U);
+  const double all =
+      site.Luminance(site.light.OnSurface(site.light.All(), {point, point, down, down}));
+  EXPECT_NEAR(site.Luminance(site.light.OnSurface(far, {point, point, down, down})), all,
+              0.03 * all);
 }
 
 // Light that increases evenly up to 10 km, behind a screen of a half at 4 km.
