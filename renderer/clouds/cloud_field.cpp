@@ -20,6 +20,9 @@ namespace alpenglow::renderer {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+// Rays with less than this along an axis count as parallel to its borders: over 100 km they move by a
+// thousandth of a millimetre.
+constexpr double kLeastSlope = 1e-11;
 
 void CheckLattice(const CloudLattice& lattice) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -463,7 +466,8 @@ CloudSpan CloudField::SpanAhead(const glm::dvec3& point, const glm::dvec3& direc
   const CloudBox block = BlockAround(cell);
   double exit = kInfinite;
   for (int axis = 0; axis < 3; ++axis) {
-    if (direction[axis] == 0.0) continue;
+    // A ray that begins at a border and leaves it this slowly would take millions of spans.
+    if (std::abs(direction[axis]) < kLeastSlope) continue;
     const double border = direction[axis] > 0.0 ? block.high[axis] : block.low[axis];
     exit = std::min(exit, border / direction[axis]);
   }

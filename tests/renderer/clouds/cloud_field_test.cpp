@@ -184,6 +184,19 @@ TEST(CloudField, SpansBoundTheExtinctionAndMakeProgress) {
   }
 }
 
+TEST(CloudField, VerticalRaysAlongBordersTakeFewSpans) {
+  const CloudField field = BallField();
+  const CloudLattice& lattice = field.lattice();
+  // The cosine of 90 degrees in doubles is not 0.
+  const glm::dvec3 direction(-6.1e-17, 3.0e-17, 1.0);
+  const glm::dvec3 border = lattice.origin_m + 8.0 * lattice.voxel_m;  // of a brick
+  double at = 0.0;
+  for (int spans = 0; at < 5000.0; ++spans) {
+    ASSERT_LT(spans, 100) << "at " << at << " m";
+    at += field.SpanAhead({border.x, border.y, lattice.origin_m.z + at}, direction).length_m;
+  }
+}
+
 TEST(CloudField, VoxelsNeedNotFillTheLastBrick) {
   // Fields of others have any number of voxels. Spans and distances must hold at the short bricks.
   CloudSamples samples;
