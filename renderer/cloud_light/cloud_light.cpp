@@ -113,6 +113,7 @@ const CloudField& CloudLight::field() const { return *field_light_->field; }
 const CloudOptics& CloudLight::optics() const { return *field_light_->optics; }
 const CloudSunDepths& CloudLight::sun() const { return sun_light_->depths; }
 const CloudFactor& CloudLight::factor() const { return sun_light_->factor; }
+double CloudLight::ground_albedo() const { return field_light_->ground_albedo; }
 const SolvedCloudMoments& CloudLight::sun_moments() const { return sun_light_->moments; }
 const SolvedCloudMoments& CloudLight::sky_moments() const { return field_light_->sky; }
 

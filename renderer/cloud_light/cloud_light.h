@@ -90,6 +90,7 @@ class CloudLight {
   [[nodiscard]] const CloudOptics& optics() const;
   [[nodiscard]] const CloudSunDepths& sun() const;
   [[nodiscard]] const CloudFactor& factor() const;
+  [[nodiscard]] double ground_albedo() const;
   /// Returns the solution for the sun.
   [[nodiscard]] const SolvedCloudMoments& sun_moments() const;
   /// Returns the solution for the sky, of which that for the ground follows.

@@ -39,7 +39,8 @@ class ColumnOfRays {
       const double cosine = std::sqrt(Halton(i, 5)), azimuth_rad = 2.0 * kPi * Halton(i, 7);
       const CloudRay from_top{{place, bounds_.high.z},
                               AroundAxis({0.0, 0.0, -1.0}, cosine, azimuth_rad)};
-      sum.up_at_top += kPi * light_.Radiance(from_top).sun;
+      const CloudRayLight above = light_.Radiance(from_top);
+      sum.up_at_top += kPi * above.sun + above.scaled_transmittance * ReflectedByGround();
       const CloudRay from_base{{place, bounds_.low.z}, UpwardsFromBase(i, cosine, azimuth_rad)};
       sum.direct_at_base += to_sun.z * light_.SunTransmittance(from_base.origin);
       const double up = from_base.direction.z;
@@ -53,6 +54,11 @@ class ColumnOfRays {
   }
 
  private:
+  /// Returns the mean flux from the ground upwards.
+  [[nodiscard]] double ReflectedByGround() const {
+    const CloudGroundIrradiance& irradiance = light_.ground_irradiance();
+    return light_.ground_albedo() * (irradiance.direct + irradiance.diffuse);
+  }
   [[nodiscard]] glm::dvec3 UpwardsFromBase(int i, double cosine, double azimuth_rad) const {
     if (Halton(i, 11) < 0.5) return AroundAxis({0.0, 0.0, 1.0}, cosine, azimuth_rad);
     const double from_sun = SampleCosine(light_.optics().phase(), Halton(i, 13));

@@ -20,7 +20,7 @@ struct CloudLightFluxOptions {
 };
 
 /// Fluxes through horizontal planes, for a unit flux of the sun through the top [1]. They contain
-/// light that the ground has reflected.
+/// light that the ground has reflected, with its mean irradiance.
 struct CloudLightFluxes {
   double up_at_top = 0.0;
   double direct_at_base = 0.0;  // not scattered and not reflected
