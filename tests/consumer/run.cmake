@@ -22,6 +22,7 @@ run(${configure} -S ${SOURCE}/readme -B ${BINARY}/readme)
 run(${CMAKE_COMMAND} --build ${BINARY}/readme)
 run(${BINARY}/readme/sky_radiance)
 run(${BINARY}/tables ${BINARY}/baked)
+run(${BINARY}/clouds)
 run(${PYTHON} -c "import math, struct
 heights = (int(900 + 600 * math.sin(x / 40) * math.cos(y / 55)) for y in range(1201) for x in range(1201))
 open('${BINARY}/N46E008.hgt', 'wb').write(struct.pack('>1442401h', *heights))")
