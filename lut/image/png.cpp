@@ -143,7 +143,7 @@ File Open(const fs::path& file) {
 
 }  // namespace
 
-void WritePng(const fs::path& file, const DisplayImage& image, const Metadata& metadata) {
+std::string PngBytes(const DisplayImage& image, const Metadata& metadata) {
   std::vector<png_text> chunks = TextChunks(metadata);
   std::vector<png_bytep> rows;
   const std::size_t stride = 3 * static_cast<std::size_t>(image.width);
@@ -155,9 +155,13 @@ void WritePng(const fs::path& file, const DisplayImage& image, const Metadata& m
   Writer writer;
   png_set_write_fn(writer.png, &bytes, AppendBytes, FlushNothing);
   if (!Encode(writer, image, chunks.data(), static_cast<int>(chunks.size()), rows.data())) {
-    throw InternalError(fmt::format("{}: libpng: {}", file.string(), writer.fault.text));
+    throw InternalError(fmt::format("libpng: {}", writer.fault.text));
   }
-  WriteTextAtomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void WritePng(const fs::path& file, const DisplayImage& image, const Metadata& metadata) {
+  WriteTextAtomically(file, PngBytes(image, metadata));
 }
 
 DisplayImage ReadPng(const fs::path& file) {

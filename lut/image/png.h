@@ -3,11 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "lut/image/image.h"
 
 namespace alpenglow::lut {
 
+/// Returns the bytes of the file that WritePng() writes.
+[[nodiscard]] std::string PngBytes(const DisplayImage& image, const Metadata& metadata);
 /// Writes 8-bit RGB with an sRGB chunk and the metadata as text chunks, atomically. Throws
 /// OutputError.
 void WritePng(const std::filesystem::path& file, const DisplayImage& image,

@@ -24,6 +24,7 @@
 #include "atmosphere/math/error_statistics.h"
 #include "atmosphere/medium/medium.h"
 #include "lut/cli/messages.h"
+#include "lut/image/image.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
@@ -90,6 +91,32 @@ struct ReportReference {
   std::vector<double> noise = std::vector<double>(kReportRegimes);
 };
 
+/// Unit of a column of a further table. Biases are fractions of either sign.
+enum class ReportUnit { kSeconds, kBytes, kError, kBias };
+
+struct ReportColumn {
+  std::string name;
+  ReportUnit unit;
+};
+
+/// A further table of a topic, for numbers of its methods beside errors and times.
+struct ReportTable {
+  struct Line {
+    std::string method;
+    MethodOrigin origin;
+    std::vector<std::optional<double>> values;  // of each column; nullopt: an empty cell
+  };
+  std::string key, title;
+  std::vector<ReportColumn> columns;
+  std::vector<Line> lines;
+};
+
+/// A picture of a topic.
+struct ReportPicture {
+  std::string key, caption;
+  DisplayImage image;
+};
+
 /// Quantity on the x axis of a topic's plot.
 enum class CostAxis { kTimeOfAnswer, kTimeToBuild };
 
@@ -108,6 +135,8 @@ struct ReportTopic {
   std::size_t rays = 0;  // evaluations in each regime
   ReportReference reference{};
   std::vector<ReportRow> rows{};
+  std::vector<ReportTable> tables{};
+  std::vector<ReportPicture> pictures{};
 };
 
 struct ReportOptions {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <system_error>
@@ -12,6 +14,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "lut/cli/output_file.h"
+#include "lut/image/png.h"
 #include "lut/image/svg_elements.h"
 #include "lut_report/embedded_text.h"
 
@@ -242,6 +245,112 @@ std::string TableOf(const ReportTopic& topic) {
   return text + "</tbody></table></div>\n";
 }
 
+std::string BiasText(double bias) { return fmt::format("{:+.1f} %", 100.0 * bias); }
+
+std::string ValueText(double value, ReportUnit unit) {
+  switch (unit) {
+    case ReportUnit::kSeconds:
+      return TimeText(value);
+    case ReportUnit::kBytes:
+      return QuantityText(value, PlotUnit::kBytes);
+    case ReportUnit::kError:
+      return ShareText(value);
+    case ReportUnit::kBias:
+      return BiasText(value);
+  }
+  return "";
+}
+
+/// Returns a value for people; `none` for costs of 0.
+std::string ValueText(double value, ReportUnit unit, const char* none) {
+  const bool is_cost = unit == ReportUnit::kSeconds || unit == ReportUnit::kBytes;
+  return is_cost && value == 0.0 ? none : ValueText(value, unit);
+}
+
+std::string ValueCell(const std::optional<double>& value, ReportUnit unit) {
+  if (!value) return "<td></td>";
+  if (unit == ReportUnit::kError) return ErrorCell(*value);
+  return Cell(CsvNumber(*value), ValueText(*value, unit, "–"));
+}
+
+std::string FurtherTableOf(const ReportTable& table) {
+  std::string text = fmt::format(
+      "<h4>{}</h4>\n<div class=\"wide\"><table>\n<thead><tr><th>method</th>", XmlText(table.title));
+  for (const ReportColumn& column : table.columns)
+    text += fmt::format("<th>{}</th>", XmlText(column.name));
+  text += "</tr></thead>\n<tbody>\n";
+  for (const ReportTable::Line& line : table.lines) {
+    text +=
+        fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th>",
+                    line.origin == MethodOrigin::kOurs ? "ours" : "theirs", XmlText(line.method));
+    for (std::size_t i = 0; i < table.columns.size(); ++i)
+      text += ValueCell(line.values.at(i), table.columns[i].unit);
+    text += "</tr>\n";
+  }
+  return text + "</tbody></table></div>\n";
+}
+
+std::string CsvOfTable(const ReportTable& table) {
+  std::string text = "method,origin";
+  for (const ReportColumn& column : table.columns) text.append(",").append(CsvText(column.name));
+  text += "\n";
+  for (const ReportTable::Line& line : table.lines) {
+    text += CsvText(line.method) +
+            (line.origin == MethodOrigin::kOurs ? ",this library" : ",literature");
+    for (const std::optional<double>& value : line.values) {
+      text += ',';
+      if (value) text += CsvNumber(*value);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// Returns a further table in Markdown.
+std::string SummaryOfTable(const ReportTable& table) {
+  std::string text = fmt::format("**{}**.\n\n| method |", table.title);
+  for (const ReportColumn& column : table.columns) text += fmt::format(" {} |", column.name);
+  text += "\n|---|";
+  for (std::size_t i = 0; i < table.columns.size(); ++i) text += "---|";
+  for (const ReportTable::Line& line : table.lines) {
+    text += fmt::format("\n| {} |", line.method);
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      const std::optional<double>& value = line.values.at(i);
+      text += value ? fmt::format(" {} |", ValueText(*value, table.columns[i].unit, "-")) : " |";
+    }
+  }
+  return text + "\n\n";
+}
+
+/// Returns bytes in base 64 (RFC 4648).
+std::string Base64Of(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      word = word << 8U | (i < count ? static_cast<unsigned char>(bytes[at + i]) : 0U);
+    for (std::size_t i = 0; i < 4; ++i)
+      text += i <= count ? kDigits[word >> (18U - 6U * i) & 63U] : '=';
+  }
+  return text;
+}
+
+/// Returns the pictures of a topic, which are part of the page.
+std::string PicturesOf(const ReportTopic& topic) {
+  if (topic.pictures.empty()) return "";
+  std::string text = "<div class=\"pictures\">\n";
+  for (const ReportPicture& picture : topic.pictures) {
+    text += fmt::format(
+        "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" "
+        "src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>\n",
+        picture.image.width, picture.image.height, XmlText(picture.caption),
+        Base64Of(PngBytes(picture.image, {})), XmlText(picture.caption));
+  }
+  return text + "</div>\n";
+}
+
 std::string ReferenceText(const ReportTopic& topic) {
   const ReportReference& reference = topic.reference;
   std::string text = fmt::format("Reference solution: {}; {} per answer.", reference.text,
@@ -274,6 +383,8 @@ std::string SectionOf(const ReportTopic& topic) {
         SvgOfPlot(*plot) + "</figure></details>\n";
   }
   text += TableOf(topic);
+  for (const ReportTable& table : topic.tables) text += FurtherTableOf(table);
+  text += PicturesOf(topic);
   return text +
          fmt::format("<p class=\"reference\">{}</p>\n</section>\n", XmlText(ReferenceText(topic)));
 }
@@ -429,6 +540,7 @@ std::string SummaryOf(const Report& report) {
     }
     if (topic.reference.noise[0] > 0.0) text += fmt::format("\n{}\n", ReferenceText(topic));
     text += "\n";
+    for (const ReportTable& table : topic.tables) text += SummaryOfTable(table);
   }
   return text + fmt::format("{}; {}; {}; {}.\n", report.maker.machine, report.maker.program,
                             report.maker.compiler, report.maker.date);
@@ -455,6 +567,10 @@ void WriteReport(const Report& report, const fs::path& folder) {
     WriteTextAtomically(folder / (TopicKey(topic) + ".svg"), SvgOfPlot(PlotOfTopic(topic)));
     if (const auto plot = PlotOverSamples(topic))
       WriteTextAtomically(folder / (TopicKey(topic) + ".samples.svg"), SvgOfPlot(*plot));
+    for (const ReportTable& one : topic.tables)
+      WriteTextAtomically(folder / (TopicKey(topic) + "." + one.key + ".csv"), CsvOfTable(one));
+    for (const ReportPicture& picture : topic.pictures)
+      WritePng(folder / (TopicKey(topic) + "." + picture.key + ".png"), picture.image, {});
   }
   for (const auto& [key, table] : tables) WriteTextAtomically(folder / (key + ".csv"), table);
   WriteTextAtomically(folder / "summary.md", SummaryOf(report));

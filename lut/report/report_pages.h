@@ -25,7 +25,7 @@ namespace alpenglow::lut {
 [[nodiscard]] std::string PageOf(const Report& report);
 
 /// Writes into the folder, which is created if it is missing: index.html, summary.md, a CSV file
-/// per topic, an SVG file per plot. Every file is written atomically, index.html last. Throws
+/// per topic and per further table, an SVG file per plot, a PNG file per picture. Every file is written atomically, index.html last. Throws
 /// OutputError.
 void WriteReport(const Report& report, const std::filesystem::path& folder);
 

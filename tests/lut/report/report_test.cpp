@@ -12,6 +12,7 @@
 #include <set>
 
 #include "atmosphere/math/constants.h"
+#include "lut/image/png.h"
 #include "lut/image/svg_elements.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
@@ -76,6 +77,63 @@ TEST_F(ReportFiles, ThePageIsSelfContainedAndNamesItsProgram) {
   for (const std::string& fact : {maker.machine, maker.program, maker.compiler, maker.date})
     EXPECT_THAT(page, HasSubstr(XmlText(fact)));
   EXPECT_THAT(page, HasSubstr(fmt::format("{:016x}", MediumHash(ReportedAir()))));
+}
+
+/// Returns a report of one topic with a further table and a picture.
+Report ReportWithTableAndPicture() {
+  ReportTopic topic;
+  topic.key = "made";
+  topic.title = "Made: a table";
+  topic.scene = "a room";
+  topic.medium = ReportedAir();
+  topic.regimes = {kRegimes[0]};
+  ReportRow row{.series = "ours", .parameter = ""};
+  row.at = {{.error = ErrorStatistics({0.01}), .strict = {}, .time_s = 1e-6}};
+  topic.rows = {row};
+  topic.tables = {{.key = "more",
+                   .title = "Made, <more>",
+                   .columns = {{"memory", ReportUnit::kBytes},
+                               {"rms, all", ReportUnit::kError},
+                               {"bias", ReportUnit::kBias}},
+                   .lines = {{"ours", MethodOrigin::kOurs, {2e6, 0.05, -0.0314}},
+                             {"theirs", MethodOrigin::kLiterature, {0.0, 0.2, {}}}}}};
+  topic.reference.noise = {0.0};
+  topic.pictures = {{"view", "A <view>", {2, 1, {255, 0, 0, 0, 0, 255}}}};
+  Report report{.words = {}, .maker = {}};
+  report.topics = {topic};
+  return report;
+}
+
+TEST_F(ReportFiles, FurtherTablesAreInThePageTheSummaryAndTheirFile) {
+  const Report report = ReportWithTableAndPicture();
+  const std::string page = PageOf(report);
+  EXPECT_THAT(page, HasSubstr("<h4>Made, &lt;more&gt;</h4>"));
+  EXPECT_THAT(page, HasSubstr("<td data-csv=\"-0.0314\">-3.1 %</td>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"e3\" data-csv=\"0.05\">5 %</td>"));
+  EXPECT_THAT(page, HasSubstr("<td data-csv=\"0\">–</td>")) << "no memory";
+  EXPECT_THAT(SummaryOf(report), HasSubstr("| ours | 2 MB | 5 % | -3.1 % |\n"));
+  EXPECT_THAT(SummaryOf(report), HasSubstr("| theirs | - | 20 % | |\n"));
+  WriteReport(report, folder_ / "made");
+  EXPECT_EQ(ContentOf(folder_ / "made" / "made.a-room-earth.more.csv"),
+            "method,origin,\"memory\",\"rms, all\",\"bias\"\n"
+            "\"ours\",this library,2e+06,0.05,-0.0314\n\"theirs\",literature,0,0.2,\n");
+}
+
+TEST_F(ReportFiles, PicturesAreInThePageAndBesideIt) {
+  const Report report = ReportWithTableAndPicture();
+  WriteReport(report, folder_ / "made");
+  const DisplayImage image = ReadPng(folder_ / "made" / "made.a-room-earth.view.png");
+  EXPECT_EQ(image.width, 2);
+  EXPECT_EQ(image.rgb, report.topics[0].pictures[0].image.rgb);
+  const std::string page = PageOf(report);
+  EXPECT_THAT(page, HasSubstr("<figcaption>A &lt;view&gt;</figcaption>"));
+  const std::string begin = "src=\"data:image/png;base64,iVBORw0KGgo";  // the signature of PNG
+  EXPECT_THAT(page, HasSubstr(begin));
+  const std::size_t at = page.find(begin), end = page.find('"', at + begin.size());
+  const std::size_t digits = end - page.find("base64,", at) - 7;
+  const auto bytes = static_cast<std::size_t>(
+      std::filesystem::file_size(folder_ / "made" / "made.a-room-earth.view.png"));
+  EXPECT_EQ(digits, (bytes + 2) / 3 * 4);
 }
 
 TEST_F(ReportFiles, NumbersOfThePageEqualThoseOfTheTables) {
