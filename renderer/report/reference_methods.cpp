@@ -273,4 +273,44 @@ double AirlightOfSun2005(double scattering_per_m, double extinction_per_m, doubl
          (SunFunction(u, v_end) - SunFunction(u, 0.5 * gamma));
 }
 
+OctaveLight OctaveSunlight(const CloudField& field, const CloudSunMap& map, double g,
+                           const CloudRay& ray, const CloudOctaves& octaves) {
+  constexpr double kStepDepth = 0.25, kLeastStep_m = 2.0, kMostStep_m = 20.0;
+  constexpr double kLeastTransmittance = 1e-3;
+  struct Octave {
+    double factor;  // b^i w p(nu; c^i g)
+    double attenuation;
+  };
+  const double nu = std::clamp(glm::dot(ray.direction, map.to_sun()), -1.0, 1.0);
+  std::vector<Octave> each;
+  for (int i = 0; i < octaves.count; ++i) {
+    const PhaseFunction phase{.kind = PhaseKind::kHenyeyGreenstein,
+                              .g = g * std::pow(octaves.eccentricity, i)};
+    each.push_back(
+        {std::pow(octaves.contribution, i) * field.single_scattering_albedo() * Phase(phase, nu),
+         std::pow(octaves.attenuation, i)});
+  }
+  OctaveLight light;
+  const CloudTracker tracker(field, false);
+  tracker.EachSpan(ray, kFarthestCloud_m, [&](double begin_m, double end_m, double) {
+    for (double at_m = begin_m; at_m < end_m && light.transmittance > kLeastTransmittance;) {
+      const double per_m = std::max(tracker.Extinction_per_m(ray.At(at_m)), 1e-9);
+      const double step_m = std::min(std::clamp(kStepDepth / per_m, kLeastStep_m, kMostStep_m),
+                                     std::max(end_m - at_m, 1e-6));
+      const glm::dvec3 middle = ray.At(at_m + 0.5 * step_m);
+      at_m += step_m;
+      const double depth = step_m * tracker.Extinction_per_m(middle);
+      if (depth <= 0.0) continue;
+      const double to_sun = OpticalDepthToSun(field, map, middle);
+      const double left = std::exp(-depth);
+      for (const auto& [factor, attenuation] : each) {
+        light.sun += light.transmittance * (1.0 - left) * factor * std::exp(-attenuation * to_sun);
+      }
+      light.transmittance *= left;
+    }
+    return light.transmittance > kLeastTransmittance;
+  });
+  return light;
+}
+
 }  // namespace alpenglow::renderer

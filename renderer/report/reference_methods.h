@@ -8,6 +8,14 @@
 // integrate the same light, and so does the closed form of Sun, Ramamoorthi, Narasimhan and Nayar
 // (2005), "A practical analytic single scattering model for real time rendering", ACM TOG 24, 1040,
 // for isotropic scattering in homogeneous air.
+//
+// For clouds there is the sunlight of octaves by Wrenninge, Kulla and Lundqvist (2013), "Oz: the great
+// and volumetric", ACM SIGGRAPH Talks, 46, as engines of games use it. Octave i stands for light of
+// higher orders by less extinction towards the sun and a wider phase function:
+//
+//   L = integral of sum_i b^i w sigma p(nu; c^i g) exp(-a^i tau_s) exp(-tau) dt
+//
+// with the optical depths tau to the eye and tau_s to the sun. Octave 0 is light of first collisions.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +26,9 @@
 
 #include "atmosphere/lamp/airlight.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "renderer/cloud_light/cloud_sun_map.h"
+#include "renderer/cloud_light/cloud_tracking.h"
+#include "renderer/clouds/cloud_field.h"
 #include "renderer/layer.h"
 #include "renderer/terrain/terrain.h"
 
@@ -118,5 +129,24 @@ enum class LampRule {
 /// @param length_m  length of the segment; may be infinite.
 [[nodiscard]] double AirlightOfSun2005(double scattering_per_m, double extinction_per_m,
                                        double length_m, double along_m, double across_m);
+
+/// Numbers of the octaves: a, b, c and how many there are.
+struct CloudOctaves {
+  double attenuation = 0.5, contribution = 0.5, eccentricity = 0.5;
+  int count = 8;
+};
+
+/// Sunlight along a ray for unit irradiance across the beam [1/sr], and what clouds leave of the
+/// light behind it.
+struct OctaveLight {
+  double sun = 0.0, transmittance = 1.0;
+};
+
+/// Returns the light of octaves in a field whose phase function is that of Henyey and Greenstein. It
+/// is integrated in steps of an optical depth of 0.25, from 2 to 20 m, up to a transmittance of
+/// 0.001. For one octave it is within 2 % of traced paths of one scattering.
+/// @param map  of the same field, for the depths towards the sun.
+[[nodiscard]] OctaveLight OctaveSunlight(const CloudField& field, const CloudSunMap& map, double g,
+                                         const CloudRay& ray, const CloudOctaves& octaves = {});
 
 }  // namespace alpenglow::renderer

@@ -17,6 +17,7 @@
 #include "lut/report/svg_plot.h"
 #include "lut/tables/transmittance_table.h"
 #include "renderer/illumination/aerial_perspective.h"
+#include "renderer/report/report_clouds.h"
 #include "renderer/report/report_lamps.h"
 #include "renderer/report/report_pictures.h"
 #include "renderer/report/report_shafts.h"
@@ -217,8 +218,10 @@ ReportWords WordsOfReport() {
       .title = "Alpenglow: speed and accuracy of pictures",
       .lead =
           "The parts of a picture of terrain in real air are compared with slow reference "
-          "solutions: the air in front of mountains, shafts of light and shadow in it, lamps in "
-          "fog, and whole pictures. Methods of this library and of the literature are evaluated on "
+          "solutions: the air in front of mountains, shafts of light and shadow in it, clouds, "
+          "lamps "
+          "in fog, and whole pictures. Methods of this library and of the literature are evaluated "
+          "on "
           "the same cases in one run.",
       .minute =
           "For each topic, this section names the fastest method whose errors are not visible in "
@@ -305,7 +308,8 @@ Report MeasurePictureReport(const ReportOptions& options) {
     for (const Medium& medium : options.mediums)
       topics.emplace_back([measure, &medium, &effort] { return measure(medium, effort); });
   }
-  for (const auto measure : {MeasureShafts, MeasureAirlight, MeasureManyLamps, MeasurePictures}) {
+  for (const auto measure :
+       {MeasureShafts, MeasureClouds, MeasureAirlight, MeasureManyLamps, MeasurePictures}) {
     topics.emplace_back([measure, &effort] { return measure(effort); });
   }
   return MeasureTopics(WordsOfReport(), options.quick, options.progress, topics);

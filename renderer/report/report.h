@@ -3,7 +3,7 @@
 // one run.
 //
 // Topics, each measured on its own: aerial perspective and transmittance in front of terrain,
-// shafts, one lamp in a medium, many lamps, whole pictures. Rows, folders and pages are those of
+// shafts, clouds, one lamp in a medium, many lamps, whole pictures. Rows, folders and pages are those of
 // lut/report/report.h; WriteReport writes them.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace alpenglow::renderer {
 [[nodiscard]] ReportTopic MeasureTransmittanceToTerrain(const Medium& medium,
                                                         const ReportEffort& effort);
 
-/// Measures all topics, in one or two minutes; options.mediums apply to the air in front of
+/// Measures all topics, in some minutes; options.mediums apply to the air in front of
 /// terrain. Stops between methods when the program is interrupted.
 [[nodiscard]] Report MeasurePictureReport(const ReportOptions& options);
 

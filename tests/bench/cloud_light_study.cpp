@@ -3,10 +3,7 @@
 // paths, for six views of one field:
 //   cloud_light_study [GENUS [SEED [SUN_DEG [PERIOD_KM [PATHS [DROPLETS [CELLS_M...]]]]]]]
 // with DROPLETS 0 for the phase function of Henyey and Greenstein (g = 0.85) or 1 for droplets.
-// Errors are root mean squares relative to the traced value of a pixel, at least a twentieth of the
-// view's mean, over pixels that clouds dim by a tenth or more; the scatter of the paths is
-// subtracted. The whole is light as at a sun of 40 degrees over grass: sun + 0.036 sky + 0.012
-// ground. Times are of the processor, for all threads together. Without paths (0) only times count.
+// The views, the errors and the whole light are those of renderer/report/cloud_views.h. Times are of the processor, for all threads together. Without paths (0) only times count.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -25,45 +22,14 @@
 #include "renderer/cloud_light/cloud_light_fluxes.h"
 #include "renderer/cloud_light/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
+#include "renderer/report/cloud_views.h"
 
 namespace alpenglow::renderer {
 namespace {
 
-constexpr int kWide = 16, kHigh = 9;
+constexpr CloudRaster kRaster{16, 9};
 // Rays are followed again to measure their time.
 constexpr int kRepeats = 50;
-constexpr double kSkyShare = 0.036, kGroundShare = 0.012;
-
-glm::dvec3 TowardsAzimuth(double azimuth_deg, double elevation_deg) {
-  const double a = azimuth_deg * kRadiansPerDegree, e = elevation_deg * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
-}
-
-struct StudyView {
-  const char* name;
-  glm::dvec3 eye;
-  double azimuth_deg, elevation_deg, width_deg;
-
-  [[nodiscard]] CloudRay Ray(int column, int line) const {
-    const glm::dvec3 forward = TowardsAzimuth(azimuth_deg, elevation_deg);
-    const glm::dvec3 right = TowardsAzimuth(azimuth_deg - 90.0, 0.0);
-    const glm::dvec3 up = glm::cross(right, forward);
-    const double half = std::tan(0.5 * width_deg * kRadiansPerDegree);
-    const double x = half * (2.0 * (column + 0.5) / kWide - 1.0);
-    const double y = half * kHigh / kWide * (1.0 - 2.0 * (line + 0.5) / kHigh);
-    return {eye, glm::normalize(forward + x * right + y * up)};
-  }
-};
-
-std::vector<StudyView> ViewsOf(const CloudField& field, double sun_azimuth_deg) {
-  const double base_m = field.base_altitude_m(), top_m = field.top_altitude_m();
-  return {{"ground, to sun", {3000, 5000, 2}, sun_azimuth_deg, 25, 60},
-          {"ground, from sun", {3000, 5000, 2}, sun_azimuth_deg + 180, 25, 60},
-          {"zenith", {9000, 9000, 2}, 100, 88, 60},
-          {"flight", {5000, 12000, top_m + 300}, 110, -12, 60},
-          {"above", {12000, 6000, 8000}, 250, -70, 50},
-          {"level", {15000, 15000, base_m + 400}, 300, 2, 50}};
-}
 
 struct StudyPixel {
   std::size_t view;
@@ -84,52 +50,18 @@ struct Stopwatch {
 };
 
 std::vector<StudyPixel> TracedPixels(const CloudField& field, const CloudPathTracer& tracer,
-                                     const std::vector<StudyView>& views, std::size_t paths) {
-  const CloudTracker tracker(field, false);
+                                     const std::vector<CloudView>& views, std::size_t paths) {
   std::vector<StudyPixel> pixels;
-  for (std::size_t view = 0; view < views.size(); ++view) {
-    for (int i = 0; i < kWide * kHigh; ++i) {
-      const CloudRay ray = views[view].Ray(i % kWide, i / kWide);
-      if (tracker.OpticalDepth(ray, 2e5, 4.0) < 0.1) continue;
-      pixels.push_back({view, ray, {}});
-      if (paths > 0) {
-        pixels.back().traced = tracer.Radiance(ray, {.seed = pixels.size(), .paths = paths});
-      }
+  for (const CloudPixel& pixel : CloudPixelsOf(field, views, kRaster)) {
+    pixels.push_back({pixel.view, pixel.ray, {}});
+    if (paths > 0) {
+      pixels.back().traced = tracer.Radiance(pixel.ray, {.seed = pixels.size(), .paths = paths});
     }
   }
   return pixels;
 }
 
-/// Errors of a quantity over pixels.
-struct StudyErrors {
-  double squares = 0.0, found = 0.0, traced = 0.0;
-  int count = 0;
-
-  void Add(double value, const CloudEstimate& truth, double mean) {
-    const double scale = std::max(truth.value, 0.05 * mean);
-    squares +=
-        (std::pow(value - truth.value, 2) - std::pow(truth.standard_error, 2)) / (scale * scale);
-    found += value;
-    traced += truth.value;
-    ++count;
-  }
-  [[nodiscard]] double Rms() const { return std::sqrt(std::max(0.0, squares / count)); }
-  [[nodiscard]] double Bias() const { return found / traced - 1.0; }
-};
-
-/// Returns the whole light of a ray, and the sum of its parts by tracing.
-CloudEstimate Whole(const CloudRadiance& light) {
-  return {light.sun.value + kSkyShare * light.sky.value + kGroundShare * light.ground.value,
-          std::hypot(light.sun.standard_error, kSkyShare * light.sky.standard_error,
-                     kGroundShare * light.ground.standard_error)};
-}
-double Whole(const CloudRayLight& light, const CloudRay& ray) {
-  const bool is_upward = ray.direction.z >= 0.0;
-  return light.sun + kSkyShare * (light.sky + (is_upward ? light.scaled_transmittance : 0.0)) +
-         kGroundShare * (light.ground + (is_upward ? 0.0 : light.scaled_transmittance));
-}
-
-void PrintErrors(const CloudLight& light, const std::vector<StudyView>& views,
+void PrintErrors(const CloudLight& light, const std::vector<CloudView>& views,
                  const std::vector<StudyPixel>& pixels) {
   const Stopwatch time;
   std::vector<CloudRayLight> found;
@@ -141,21 +73,22 @@ void PrintErrors(const CloudLight& light, const std::vector<StudyView>& views,
   std::vector<double> mean(views.size()), mean_whole(views.size()), count(views.size());
   for (const StudyPixel& pixel : pixels) {
     mean[pixel.view] += pixel.traced.sun.value;
-    mean_whole[pixel.view] += Whole(pixel.traced).value;
+    mean_whole[pixel.view] += WholeCloudLight(pixel.traced).value;
     count[pixel.view] += 1.0;
   }
-  StudyErrors sun, whole, sky;
+  CloudErrors sun, whole, sky;
   std::string by_view;
   for (std::size_t view = 0; view < views.size(); ++view) {
-    StudyErrors of_sun, of_whole;
+    CloudErrors of_sun, of_whole;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       if (pixels[i].view != view) continue;
-      const CloudEstimate truth = Whole(pixels[i].traced);
-      for (StudyErrors* errors : {&sun, &of_sun}) {
+      const CloudEstimate truth = WholeCloudLight(pixels[i].traced);
+      for (CloudErrors* errors : {&sun, &of_sun}) {
         errors->Add(found[i].sun, pixels[i].traced.sun, mean[view] / count[view]);
       }
-      for (StudyErrors* errors : {&whole, &of_whole}) {
-        errors->Add(Whole(found[i], pixels[i].ray), truth, mean_whole[view] / count[view]);
+      for (CloudErrors* errors : {&whole, &of_whole}) {
+        errors->Add(WholeCloudLight(found[i], pixels[i].ray), truth,
+                    mean_whole[view] / count[view]);
       }
       const bool is_upward = pixels[i].ray.direction.z >= 0.0;
       sky.Add(found[i].sky + (is_upward ? found[i].scaled_transmittance : 0.0),
@@ -188,7 +121,7 @@ void RunStudy(const StudyCase& study) {
                          : CloudPhases({.kind = PhaseKind::kHenyeyGreenstein, .g = 0.85})};
   const CloudSurroundings surroundings{TowardsAzimuth(20.0, study.sun_deg)};
   const CloudPathTracer tracer(field, scatterers, surroundings);
-  const std::vector<StudyView> views = ViewsOf(field, 20.0);
+  const std::vector<CloudView> views = CloudViewsOf(field, 20.0);
   const Stopwatch tracing;
   const std::vector<StudyPixel> pixels = TracedPixels(field, tracer, views, study.paths);
   const std::size_t paths = std::max<std::size_t>(pixels.front().traced.paths, 1);
@@ -206,7 +139,7 @@ void RunStudy(const StudyCase& study) {
   fmt::print(
       "| cell, factor | processor s, wall s | sweeps of sun, sky | MB | us a ray | sun: rms, "
       "bias % | whole | sky |");
-  for (const StudyView& view : views) fmt::print(" {}: sun / whole |", view.name);
+  for (const CloudView& view : views) fmt::print(" {}: sun / whole |", view.name);
   fmt::print("\n");
   for (const double cell_m : study.cells_m) {
     for (const bool is_fitted : {false, true}) {

@@ -55,8 +55,8 @@ TEST_F(PictureReportFiles, EveryTopicHasATableAndAPlot) {
   for (const auto& entry : fs::directory_iterator(folder_ / "report"))
     names.insert(entry.path().filename());
   for (const char* file : {"index.html", "summary.md"}) EXPECT_EQ(names.count(file), 1U) << file;
-  for (const char* key : {"aerial_perspective", "terrain_transmittance", "shafts", "airlight",
-                          "many_lamps", "pictures"}) {
+  for (const char* key : {"aerial_perspective", "terrain_transmittance", "shafts", "clouds",
+                          "airlight", "many_lamps", "pictures"}) {
     EXPECT_EQ(names.count(std::string(key) + ".csv"), 1U) << key;
     EXPECT_EQ(std::count_if(names.begin(), names.end(),
                             [&](const std::string& name) {
@@ -92,8 +92,10 @@ TEST_F(PictureReportFiles, ThePageHasEverySectionAndNeedsNoOtherFile) {
   const std::string page = PageOf(QuickReport());
   for (const ReportTopic& topic : QuickReport().topics)
     EXPECT_NE(page.find(XmlText(topic.title)), std::string::npos) << topic.title;
-  for (const char* outside : {"<link", "<script", "<img", "src=", ">nan", ">inf", "@reading@"})
+  for (const char* outside : {"<link", "<script", "url(", ">nan", ">inf", "@reading@"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  EXPECT_EQ(CountOf(page, "src="), CountOf(page, "src=\"data:image/png;base64,"));
+  EXPECT_GT(CountOf(page, "src="), 0U) << "pictures of clouds";
 }
 
 TEST(PictureReport, MoreEffortGivesLessError) {
@@ -130,6 +132,46 @@ TEST(PictureReport, ClosedFormOfSunEtAlNeedsUniformIsotropicFog) {
   EXPECT_TRUE(row.at[0].IsMeasured());
   EXPECT_LT(row.at[0].error.Rms(), 1e-6);
   for (std::size_t r = 1; r < row.at.size(); ++r) EXPECT_FALSE(row.at[r].IsMeasured());
+}
+
+/// Returns a number of a further table of clouds under a sun.
+double NumberOf(std::string_view sun, std::string_view method, std::string_view column) {
+  for (const ReportTable& table : tests::TopicOf(QuickReport(), "clouds").tables) {
+    if (table.key != sun) continue;
+    for (const ReportTable::Line& line : table.lines) {
+      for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        if (line.method == method && table.columns[i].name == column)
+          return line.values.at(i).value();
+      }
+    }
+  }
+  throw InternalError("no number " + std::string(method) + ", " + std::string(column));
+}
+
+TEST(PictureReport, CloudsNeedLightOfAllOrders) {
+  constexpr const char* kFitted = "moments on cells, fitted factor";
+  for (const char* sun : {"sun35", "sun12"}) {
+    EXPECT_LT(NumberOf(sun, "single scattering", "sun: bias"), -0.5) << sun;
+    for (const char* other : {"single scattering", "octaves (Wrenninge et al. 2013), 8"}) {
+      EXPECT_LT(NumberOf(sun, kFitted, "sun: rms"), NumberOf(sun, other, "sun: rms")) << sun;
+      EXPECT_LT(NumberOf(sun, kFitted, "whole: rms"), NumberOf(sun, other, "whole: rms")) << sun;
+    }
+    EXPECT_LT(NumberOf(sun, "path tracing, 251 paths", "sun: rms"),
+              NumberOf(sun, "path tracing, 16 paths", "sun: rms"));
+    // Two hundred pixels of 251 paths each scatter by a hundredth in their sum.
+    EXPECT_NEAR(NumberOf(sun, "path tracing, 251 paths", "sun: bias"), 0.0, 0.05) << sun;
+    EXPECT_EQ(NumberOf(sun, "path tracing, 251 paths", "memory"), 0.0);
+  }
+}
+
+TEST(PictureReport, EveryMethodOfCloudsHasItsPictureAndItsErrors) {
+  const ReportTopic& clouds = tests::TopicOf(QuickReport(), "clouds");
+  EXPECT_EQ(clouds.pictures.size(), 2 * (clouds.rows.size() + 1));
+  for (const ReportTable& table : clouds.tables) {
+    EXPECT_EQ(table.lines.size(), clouds.rows.size());
+    for (const ReportTable::Line& line : table.lines)
+      EXPECT_EQ(line.values.size(), table.columns.size());
+  }
 }
 
 TEST(PictureReport, SamplesOfAirlightIncludeThoseThatOnlyProbe) {

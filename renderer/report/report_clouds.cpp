@@ -1,0 +1,455 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/report/report_clouds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "renderer/cloud_light/cloud_light.h"
+#include "renderer/cloud_light/cloud_path_tracer.h"
+#include "renderer/cloud_light/cloud_sun_map.h"
+#include "renderer/clouds/cloud_generator.h"
+#include "renderer/report/cloud_views.h"
+#include "renderer/report/reference_methods.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+constexpr std::array<ReportRegime, 2> kCloudSuns{
+    {{"35", "Sun at 35°", SunRange{35.0, 35.0}}, {"12", "Sun at 12°", SunRange{12.0, 12.0}}}};
+constexpr double kCloudSunAzimuth_deg = 20.0, kCloudG = 0.85;
+constexpr std::size_t kReferenceBatches = 16;
+// The view of the pictures, from an aeroplane over the tops, and its sun.
+constexpr std::size_t kPictureView = 3, kPictureSun = 0;
+constexpr int kScreenPixels = 4;            // of the display, along a side of a pixel
+constexpr double kLargestShownError = 0.5;  // has the full colour
+
+/// Sizes of the topic.
+struct CloudStudySize {
+  double period_m;
+  CloudRaster raster;           // of each view
+  std::size_t paths_per_batch;  // of the reference
+  CloudRaster picture;
+  std::size_t picture_paths;  // per batch
+};
+CloudStudySize CloudSizeOf(bool quick) {
+  if (quick) return {kPeriodStep_m, {8, 5}, 32, {32, 18}, 8};
+  return {2.0 * kPeriodStep_m, {12, 7}, 125, {80, 45}, 31};
+}
+
+/// A field under one sun.
+struct CloudUnderSun {
+  const CloudField* field;
+  CloudScatterers scatterers;
+  CloudSurroundings surroundings;
+};
+
+/// A method that is ready for one sun.
+struct ReadyCloudMethod {
+  std::function<CloudRayLight(const CloudRay&)> light;
+  std::size_t bytes = 0;
+};
+
+ReadyCloudMethod ReadyOctaves(const CloudUnderSun& under, int count) {
+  const auto map = std::make_shared<const CloudSunMap>(*under.field, under.surroundings.to_sun);
+  return {[field = under.field, map, count](const CloudRay& ray) {
+            const OctaveLight found = OctaveSunlight(*field, *map, kCloudG, ray, {.count = count});
+            return CloudRayLight{.sun = found.sun,
+                                 .transmittance = found.transmittance,
+                                 .scaled_transmittance = found.transmittance};
+          },
+          map->bytes()};
+}
+
+ReadyCloudMethod ReadyMoments(const CloudUnderSun& under, std::size_t factor_rays) {
+  const CloudLight light(*under.field, under.scatterers, under.surroundings,
+                         {.factor = {.rays = factor_rays}});
+  return {[light](const CloudRay& ray) { return light.Radiance(ray); }, light.bytes()};
+}
+
+/// Returns the light of a ray by independent batches of paths, on this thread.
+/// @param paths_per_batch  at most kPathsPerBatch: the points of a lattice, evenly spread over it.
+CloudRadiance TracedLight(const CloudPathTracer& tracer, const CloudRay& ray, std::uint64_t seed,
+                          std::size_t batches, std::size_t paths_per_batch) {
+  std::array<std::array<double, 2>, 3> sums{};  // of sun, sky and ground: means and their squares
+  const std::size_t stride = atmosphere::reference::kPathsPerBatch / paths_per_batch;
+  for (std::size_t batch = 0; batch < batches; ++batch) {
+    CloudPathLight sum;
+    for (std::size_t path = 0; path < paths_per_batch; ++path) {
+      CloudPathTracer::PathRandom random(seed, batch, stride * path);
+      const CloudPathLight light = tracer.OnePath(ray, random);
+      sum.sun += light.sun;
+      sum.sky += light.sky;
+      sum.ground += light.ground;
+    }
+    const std::array<double, 3> values{sum.sun, sum.sky, sum.ground};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double mean = values[i] / static_cast<double>(paths_per_batch);
+      sums[i][0] += mean;
+      sums[i][1] += mean * mean;
+    }
+  }
+  const auto estimate = [&](const std::array<double, 2>& sum) -> CloudEstimate {
+    const auto count = static_cast<double>(batches);
+    const double mean = sum[0] / count;
+    const double variance = std::max(0.0, sum[1] / count - mean * mean);
+    return {mean, batches > 1 ? std::sqrt(variance / (count - 1.0)) : 0.0};
+  };
+  return {estimate(sums[0]), estimate(sums[1]), estimate(sums[2]), {}, batches * paths_per_batch};
+}
+
+/// Returns a method of `paths` paths for each ray. Sky and ground behind clouds are part of its light.
+ReadyCloudMethod ReadyPaths(const CloudUnderSun& under, std::size_t paths) {
+  const CloudPathTracer tracer(*under.field, under.scatterers, under.surroundings);
+  return {[tracer, paths](const CloudRay& ray) {
+            Fnv1a seed;  // differs from the seeds of the reference, which are small
+            for (int axis = 0; axis < 3; ++axis)
+              seed.Add(std::bit_cast<std::uint64_t>(ray.direction[axis]));
+            const CloudRadiance light = TracedLight(tracer, ray, seed.hash(), 1, paths);
+            return CloudRayLight{.sun = light.sun.value,
+                                 .sky = light.sky.value,
+                                 .ground = light.ground.value,
+                                 .scaled_transmittance = 0.0};
+          },
+          0};
+}
+
+struct CloudMethod {
+  const char* key;  // in names of files
+  const char* series;
+  const char* parameter;
+  MethodOrigin origin;
+  ReadyCloudMethod (*ready)(const CloudUnderSun& under);
+
+  [[nodiscard]] std::string Name() const {
+    return ReportRow{.series = series, .parameter = parameter}.Name();
+  }
+};
+
+/// The methods, in the order of the tables. A new line is a new method.
+constexpr std::array<CloudMethod, 6> kCloudMethods{
+    {{"single", "single scattering", "", MethodOrigin::kLiterature,
+      [](const CloudUnderSun& under) { return ReadyOctaves(under, 1); }},
+     {"octaves", "octaves (Wrenninge et al. 2013)", "8", MethodOrigin::kLiterature,
+      [](const CloudUnderSun& under) { return ReadyOctaves(under, 8); }},
+     {"moments", "moments on cells", "without factor", MethodOrigin::kOurs,
+      [](const CloudUnderSun& under) { return ReadyMoments(under, 0); }},
+     {"fitted", "moments on cells", "fitted factor", MethodOrigin::kOurs,
+      [](const CloudUnderSun& under) { return ReadyMoments(under, CloudFactorOptions{}.rays); }},
+     {"paths16", "path tracing", "16 paths", MethodOrigin::kOurs,
+      [](const CloudUnderSun& under) { return ReadyPaths(under, 16); }},
+     {"paths251", "path tracing", "251 paths", MethodOrigin::kOurs,
+      [](const CloudUnderSun& under) { return ReadyPaths(under, 251); }}}};
+
+/// A pixel with its light by the reference.
+struct CloudCase {
+  CloudPixel pixel;
+  CloudRadiance traced;
+};
+using CloudStudy = ErrorStudy<CloudCase>;
+
+CloudOptions StudiedCumulus(double period_m) {
+  CloudOptions options = DefaultCloudOptions(CloudGenus::kCumulus);
+  options.period_m = period_m;
+  return options;
+}
+
+/// The field, its suns and its views.
+struct CloudScene {
+  explicit CloudScene(const CloudStudySize& size)
+      : field(MakeCloudField(StudiedCumulus(size.period_m))),
+        views(CloudViewsOf(field, kCloudSunAzimuth_deg)) {
+    for (const ReportRegime& sun : kCloudSuns) {
+      suns.push_back({&field,
+                      {CloudPhases({.kind = PhaseKind::kHenyeyGreenstein, .g = kCloudG})},
+                      {TowardsAzimuth(kCloudSunAzimuth_deg, sun.sun->lowest_deg)}});
+    }
+  }
+  CloudScene(const CloudScene&) = delete;
+  CloudScene& operator=(const CloudScene&) = delete;
+
+  [[nodiscard]] CloudPathTracer TracerUnder(std::size_t sun) const {
+    return {field, suns[sun].scatterers, suns[sun].surroundings};
+  }
+
+  CloudField field;
+  std::vector<CloudView> views;
+  std::vector<CloudUnderSun> suns;  // refer to the field
+};
+
+/// Returns the means over the pixels of each view.
+template <typename Value>
+std::vector<double> MeansByView(const std::vector<CloudCase>& cases, std::size_t views,
+                                const Value& value) {
+  std::vector<double> sum(views, 0.0), count(views, 0.0);
+  for (const CloudCase& one : cases) {
+    sum[one.pixel.view] += value(one.traced);
+    count[one.pixel.view] += 1.0;
+  }
+  for (std::size_t view = 0; view < views; ++view) sum[view] /= std::max(count[view], 1.0);
+  return sum;
+}
+
+double SunOf(const CloudRadiance& light) { return light.sun.value; }
+double WholeOf(const CloudRadiance& light) { return WholeCloudLight(light).value; }
+
+/// Solves the sunlight of all pixels. Errors are relative to it, at least to a part of the mean of
+/// the view.
+void SolveCloudPixels(CloudStudy& study, const CloudScene& scene, const CloudStudySize& size) {
+  const std::vector<CloudPixel> pixels = CloudPixelsOf(scene.field, scene.views, size.raster);
+  std::vector<CloudPathTracer> tracers;
+  for (std::size_t sun = 0; sun < scene.suns.size(); ++sun)
+    tracers.push_back(scene.TracerUnder(sun));
+  study.SolveCases(pixels.size(), [&](std::size_t r, std::size_t i) {
+    const CloudRadiance traced =
+        TracedLight(tracers[r], pixels[i].ray, i + 1, kReferenceBatches, size.paths_per_batch);
+    return std::optional(CloudStudy::Solved{{pixels[i], traced},
+                                            {{traced.sun.value}, {traced.sun.standard_error}, {}}});
+  });
+  for (std::size_t r = 0; r < study.regimes(); ++r) {
+    const std::vector<double> mean = MeansByView(study.cases(r), scene.views.size(), SunOf);
+    for (std::size_t i = 0; i < study.cases(r).size(); ++i) {
+      const CloudCase& one = study.cases(r)[i];
+      study.references(r)[i].scale = {
+          std::max(one.traced.sun.value, kDarkestCloud * mean[one.pixel.view])};
+    }
+    study.topic().reference.noise[r] = NoiseOf(study.references(r));
+  }
+}
+
+/// Returns the table of a sun, without lines.
+ReportTable EmptyCloudTable(const ReportRegime& sun, const std::vector<CloudView>& views) {
+  ReportTable table{.key = fmt::format("sun{}", sun.key),
+                    .title = fmt::format("Clouds, {}: bias, and the whole light", sun.name),
+                    .columns = {{"memory", ReportUnit::kBytes},
+                                {"solve", ReportUnit::kSeconds},
+                                {"time of a ray", ReportUnit::kSeconds},
+                                {"sun: rms", ReportUnit::kError},
+                                {"sun: bias", ReportUnit::kBias},
+                                {"whole: rms", ReportUnit::kError},
+                                {"whole: bias", ReportUnit::kBias}},
+                    .lines = {}};
+  for (const CloudView& view : views)
+    table.columns.push_back({fmt::format("sun: bias, {}", view.name), ReportUnit::kBias});
+  return table;
+}
+
+/// What a method costs under one sun, and its light in all pixels.
+struct CloudMeasured {
+  double bytes = 0.0, solve_s = 0.0;
+  std::vector<CloudRayLight> light;
+};
+
+/// Returns the numbers of a method under one sun, in the order of the columns.
+std::vector<std::optional<double>> CloudNumbers(const std::vector<CloudCase>& cases,
+                                                std::size_t views, const CloudMeasured& measured,
+                                                double time_s) {
+  const std::vector<double> sun_mean = MeansByView(cases, views, SunOf);
+  const std::vector<double> whole_mean = MeansByView(cases, views, WholeOf);
+  CloudErrors sun, whole;
+  std::vector<CloudErrors> of_view(views);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const std::size_t view = cases[i].pixel.view;
+    const CloudEstimate& truth = cases[i].traced.sun;
+    sun.Add(measured.light[i].sun, truth, sun_mean[view]);
+    of_view[view].Add(measured.light[i].sun, truth, sun_mean[view]);
+    whole.Add(WholeCloudLight(measured.light[i], cases[i].pixel.ray),
+              WholeCloudLight(cases[i].traced), whole_mean[view]);
+  }
+  std::vector<std::optional<double>> numbers{
+      measured.bytes, measured.solve_s, time_s, sun.Rms(), sun.Bias(), whole.Rms(), whole.Bias()};
+  for (const CloudErrors& errors : of_view)
+    numbers.push_back(errors.count() > 0 ? std::optional(errors.Bias()) : std::nullopt);
+  return numbers;
+}
+
+using ScreenColour = std::array<double, 3>;
+
+/// Returns a picture of colours in [0, 1], each pixel a square of the display.
+template <typename ColourOf>
+DisplayImage ScreenImage(const CloudRaster& raster, const ColourOf& colour_of) {
+  DisplayImage image{kScreenPixels * raster.columns, kScreenPixels * raster.lines, {}};
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const ScreenColour colour = colour_of(
+          static_cast<std::size_t>(y / kScreenPixels * raster.columns + x / kScreenPixels));
+      for (const double value : colour)
+        image.rgb.push_back(static_cast<std::uint8_t>(255.0 * std::clamp(value, 0.0, 1.0) + 0.5));
+    }
+  }
+  return image;
+}
+
+/// Returns white for no error, blue for too little light and red for too much.
+ScreenColour ErrorColour(double error) {
+  constexpr ScreenColour kBlue{0.02, 0.25, 0.65}, kRed{0.70, 0.05, 0.10};
+  const double share = std::min(std::abs(error) / kLargestShownError, 1.0);
+  const ScreenColour& end = error < 0.0 ? kBlue : kRed;
+  ScreenColour colour{};
+  for (std::size_t i = 0; i < 3; ++i) colour[i] = 1.0 + share * (end[i] - 1.0);
+  return colour;
+}
+
+/// One view of the field in whole light, by the reference and by every method.
+class CloudPictures {
+ public:
+  CloudPictures(const CloudScene& scene, const CloudStudySize& size)
+      : raster_(size.picture), traced_(static_cast<std::size_t>(raster_.columns * raster_.lines)) {
+    for (int i = 0; i < raster_.columns * raster_.lines; ++i)
+      rays_.push_back(scene.views[kPictureView].Ray(i, raster_));
+    const CloudPathTracer tracer = scene.TracerUnder(kPictureSun);
+    ForEachCase(rays_.size(), [&](std::size_t i) {
+      traced_[i] = WholeCloudLight(
+          TracedLight(tracer, rays_[i], i + 1, kReferenceBatches, size.picture_paths));
+    });
+    double noise = 0.0;
+    for (const CloudEstimate& each : traced_) {
+      mean_ += each.value / static_cast<double>(traced_.size());
+      white_ = std::max(white_, each.value - 2.0 * each.standard_error);
+    }
+    for (const CloudEstimate& each : traced_) {
+      noise += std::pow(each.standard_error / std::max(each.value, kDarkestCloud * mean_), 2) /
+               static_cast<double>(traced_.size());
+    }
+    Add("traced",
+        fmt::format("Traced paths: {} a pixel, standard error {:.1f} % (rms)",
+                    kReferenceBatches * size.picture_paths, 100.0 * std::sqrt(noise)),
+        [&](std::size_t i) { return Grey(traced_[i].value); });
+    Add("traced.error",
+        fmt::format("Standard error of the traced paths; full colour from {:.0f} % on",
+                    100.0 * kLargestShownError),
+        [&](std::size_t i) {
+          return ErrorColour(traced_[i].standard_error /
+                             std::max(traced_[i].value, kDarkestCloud * mean_));
+        });
+  }
+
+  void Add(const CloudMethod& method, const ReadyCloudMethod& ready) {
+    std::vector<double> found(rays_.size());
+    ForEachCase(rays_.size(), [&](std::size_t i) {
+      found[i] = WholeCloudLight(ready.light(rays_[i]), rays_[i]);
+    });
+    Add(method.key, method.Name(), [&](std::size_t i) { return Grey(found[i]); });
+    Add(fmt::format("{}.error", method.key),
+        fmt::format("{}: error; blue: too dark, red: too bright, full colour from {:.0f} % on",
+                    method.Name(), 100.0 * kLargestShownError),
+        [&](std::size_t i) {
+          return ErrorColour((found[i] - traced_[i].value) /
+                             std::max(traced_[i].value, kDarkestCloud * mean_));
+        });
+  }
+
+  [[nodiscard]] std::vector<ReportPicture> Finished() && { return std::move(pictures_); }
+
+ private:
+  [[nodiscard]] ScreenColour Grey(double light) const {
+    const double value = std::pow(std::max(light, 0.0) / white_, 1.0 / 2.2);
+    return {value, value, value};
+  }
+  template <typename ColourOf>
+  void Add(std::string key, std::string caption, const ColourOf& colour_of) {
+    pictures_.push_back({std::move(key), std::move(caption), ScreenImage(raster_, colour_of)});
+  }
+
+  CloudRaster raster_;
+  std::vector<CloudRay> rays_;
+  std::vector<CloudEstimate> traced_;
+  double mean_ = 0.0, white_ = 1e-9;
+  std::vector<ReportPicture> pictures_;
+};
+
+void AddCloudMethod(CloudStudy& study, const CloudScene& scene, const CloudMethod& method,
+                    CloudPictures& pictures) {
+  std::vector<CloudMeasured> measured(study.regimes());
+  const auto prepare = [&](std::size_t r, ReportRow& row) {
+    auto [ready, seconds] = Built(study.effort(), [&] { return method.ready(scene.suns[r]); });
+    measured[r].bytes = static_cast<double>(ready.bytes);
+    measured[r].solve_s = ready.bytes > 0 ? seconds : 0.0;
+    row.memory_bytes = std::max<std::uint64_t>(row.memory_bytes, ready.bytes);
+    row.build_s = std::max(row.build_s, measured[r].solve_s);
+    const std::vector<CloudCase>& cases = study.cases(r);
+    measured[r].light.resize(cases.size());
+    ForEachCase(cases.size(),
+                [&](std::size_t i) { measured[r].light[i] = ready.light(cases[i].pixel.ray); });
+    if (r == kPictureSun) pictures.Add(method, ready);
+    return [light = ready.light](const CloudCase& one) { return light(one.pixel.ray).sun; };
+  };
+  study.AddPrepared({.series = method.series,
+                     .parameter = method.parameter,
+                     .origin = method.origin,
+                     .in_summary = true},
+                    prepare);
+  for (std::size_t r = 0; r < study.regimes(); ++r) {
+    study.topic().tables[r].lines.push_back(
+        {method.Name(), method.origin,
+         CloudNumbers(study.cases(r), scene.views.size(), measured[r],
+                      study.topic().rows.back().at[r].time_s)});
+  }
+}
+
+ReportTopic WordsOfClouds(const CloudStudySize& size) {
+  ReportTopic topic{
+      .key = "clouds",
+      .title = "Clouds: light of all orders in cumulus",
+      .what =
+          "Cumulus of cover 0.3 over black ground, in six views: from the ground towards the sun "
+          "and away from it, to the zenith, from an aeroplane over the tops, from above, and level "
+          "between clouds. The methods compute the radiance of sunlight along rays that clouds dim "
+          "by a tenth or more. Droplets absorb nothing and scatter by Henyey and Greenstein "
+          "(g = 0.85).",
+      .error_unit =
+          "fractions of the radiance; a radiance below a twentieth of the mean of its view counts "
+          "as if it were that bright",
+      .notes =
+          "Single scattering and octaves take their optical depths to the sun from this library's "
+          "map. Octaves are those of Wrenninge, Kulla and Lundqvist (2013) with a = b = c = 0.5, "
+          "as "
+          "engines of games use them. Both have sunlight alone; the whole light of the further "
+          "tables, sun + 0.036 sky + 0.012 ground, lacks that of sky and ground in clouds. The "
+          "factor of \"moments on cells\" is fitted to traced paths of the same field. "
+          "Errors "
+          "of path tracing are its noise; its bias is within its noise, too. build and solve are "
+          "the time of all threads together.",
+      .wanted = 0.1,
+      .answer = "ray",
+      .everywhere = "under both suns",
+      .scene = fmt::format("cumulus {:.2f} km", 1e-3 * size.period_m),
+      .regimes = {kCloudSuns.begin(), kCloudSuns.end()}};
+  topic.medium.name.clear();  // there is no air
+  topic.medium.wavelengths_nm = {550.0};
+  return topic;
+}
+
+}  // namespace
+
+ReportTopic MeasureClouds(const ReportEffort& effort) {
+  const CloudStudySize size = CloudSizeOf(effort.quick);
+  const CloudScene scene(size);
+  ReportEffort fewer = effort;
+  fewer.passes = std::min<std::size_t>(effort.passes, 3);
+  fewer.time_every = 4;
+  CloudStudy study(WordsOfClouds(size), fewer);
+  study.topic().reference.text =
+      fmt::format("{} traced paths per ray", kReferenceBatches * size.paths_per_batch);
+  SolveCloudPixels(study, scene, size);
+  for (const ReportRegime& sun : kCloudSuns)
+    study.topic().tables.push_back(EmptyCloudTable(sun, scene.views));
+  CloudPictures pictures(scene, size);
+  for (const CloudMethod& method : kCloudMethods) AddCloudMethod(study, scene, method, pictures);
+  study.topic().pictures = std::move(pictures).Finished();
+  return std::move(study).Finished();
+}
+
+}  // namespace alpenglow::renderer
