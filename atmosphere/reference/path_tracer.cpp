@@ -12,6 +12,8 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
+#include <variant>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
@@ -26,6 +28,11 @@ using Vector = glm::dvec3;
 
 constexpr int kFirstStrata = 8;  // strata of each map along the first segment of a path
 constexpr int kLaterStrata = 4;  // strata of each map along later segments
+// Among other bodies a point costs a ray to the sun through them, and a path costs more than the
+// points of its first segments.
+constexpr int kFirstStrataAmongBodies = 3, kLaterStrataAmongBodies = 2;
+// Segments among bodies of a smaller optical depth of air have one point, or none at random.
+constexpr double kThinAir = 0.02;
 // If the expected contribution of the next segment is below kRouletteShare times that of the first
 // segment, the path undergoes Russian roulette; above kSplitShare times, it is split. Without
 // splitting, the weights of the hundreds of orders in thick air would diverge (weight windows:
@@ -108,6 +115,9 @@ class Scene {
   /// Returns the segment from a point inside the shell to the ground or the top.
   [[nodiscard]] Piece PieceFrom(const Vector& origin, const Vector& direction) const;
   [[nodiscard]] DistanceMaps MapsOf(const Piece& piece, int strata) const;
+  /// Returns an upper bound of the optical depth of scattering air along a segment, mean over the
+  /// wavelengths.
+  [[nodiscard]] double MostOpticalDepth(const Piece& piece) const;
 
   [[nodiscard]] bool Lit(double radius_m, double towards_sun_m) const {
     return towards_sun_m >= 0.0 ||
@@ -116,6 +126,8 @@ class Scene {
   [[nodiscard]] AirColumns ColumnsToSun(double radius_m, double towards_sun_m) const {
     return table_.ToSpace(PerigeeRadius(radius_m * radius_m, towards_sun_m), towards_sun_m);
   }
+  /// Returns the columns from the segment's origin to a distance.
+  [[nodiscard]] AirColumns ColumnsAlong(const Piece& piece, double distance_m) const;
 
  private:
   [[nodiscard]] double ShadowRadius() const;
@@ -160,6 +172,20 @@ double Scene::FreePath(double radius_m) const {
   const double extinction =
       rayleigh_per_m_ * RayleighDensity(radius_m) + mie_per_m_ * MieDensity(radius_m);
   return 1.0 / std::max(extinction, 1e-300);
+}
+
+AirColumns Scene::ColumnsAlong(const Piece& piece, double distance_m) const {
+  const ColumnTable::Line line = table_.LineAt(piece.perigee_m);
+  const double s1 = piece.s0_m + distance_m;
+  const AirColumns at_perigee =
+      piece.s0_m < 0.0 && s1 > 0.0 ? table_.Primitive(line, 0.0) : AirColumns{};
+  return ColumnTable::Difference(piece.s0_m, table_.Primitive(line, piece.s0_m), s1,
+                                 table_.Primitive(line, s1), at_perigee);
+}
+
+double Scene::MostOpticalDepth(const Piece& piece) const {
+  const double nearest = std::clamp(-piece.s0_m, 0.0, piece.length_m);
+  return piece.length_m / FreePath(piece.Radius(nearest));
 }
 
 // Returns the distance along the line from s outwards over which extinction falls by about a factor
@@ -292,19 +318,45 @@ struct Responses {
   std::vector<double> molecules, aerosol;
 };
 
+/// What paths travel through.
+struct PathMatter {
+  const Scene& scene;
+  const PolarisedScattering* polarised = nullptr;  // null: scalar light
+  const PathSurroundings* bodies = nullptr;        // null: the planet's sphere alone
+
+  [[nodiscard]] std::vector<double> NoLight() const {
+    return std::vector<double>((polarised == nullptr ? 1 : kStokes) * scene.bands(), 0.0);
+  }
+};
+
+/// Light that is scattered into one direction, at the vertex of a path.
+struct Turned {
+  double density;             // with which the vertex draws this direction [1/sr]
+  std::vector<double> value;  // by band; integrated over directions: scattered light per arriving
+  /// Analyser before scattering, by band; empty if the vertex depolarises, or for scalar light.
+  std::vector<Analyser> analyser = {};
+  Vector reference{};
+};
+
 /// Follows paths, one at a time.
 class Tracer {
  public:
-  /// @param polarised  null for scalar light.
-  Tracer(const Scene& scene, const PolarisedScattering* polarised, int max_order)
-      : scene_(scene), polarised_(polarised), max_order_(max_order) {
-    weight_.resize(scene.bands());
+  Tracer(const PathMatter& matter, int max_order)
+      : scene_(matter.scene),
+        polarised_(matter.polarised),
+        bodies_(matter.bodies),
+        max_order_(max_order) {
+    weight_.resize(scene_.bands());
   }
 
   /// Adds `factor` times the light along the segment.
   void Follow(const Piece& first, double factor, PathRandom& random, Gathered& light);
 
  private:
+  class AirTurn;
+  class SurfaceTurn;
+  class CloudTurn;
+
   struct Point {
     double distance_m, length_m;  // from the segment's origin; line represented by the point
     double rayleigh, mie;         // relative densities
@@ -318,36 +370,56 @@ class Tracer {
     std::vector<double> weight;
     std::vector<Analyser> analyser;
     Vector reference{};
+    double sun_share = 1.0;  // weight of the sun's light at a cloud at the end of the segment
   };
   struct Copies {
     int count;
     double factor;  // factor of their weights
   };
-  static constexpr std::size_t kGround = std::numeric_limits<std::size_t>::max();
+  static constexpr std::size_t kEnd = std::numeric_limits<std::size_t>::max();
 
+  [[nodiscard]] std::optional<PathMeeting> MeetingOn(const Piece& piece, PathRandom& random) const;
+  [[nodiscard]] PathSurface PlanetAt(const Piece& piece) const;
+  void SpreadAmongBodies(const Piece& piece, PathRandom& random);
   void Spread(const Piece& piece, int strata, double jitter);
-  void Gather(const Piece& piece, std::vector<double>& light);
+  [[nodiscard]] Point PointAt(const Piece& piece, double distance_m, double length_m,
+                              const AirColumns& view) const;
+  void Gather(const Piece& piece, PathRandom& random, std::vector<double>& light);
   void GatherFromAir(const Piece& piece, const Point& point, const Responses& responses,
-                     std::vector<double>& light) const;
-  void GatherFromGround(const Piece& piece, std::vector<double>& light);
+                     PathRandom& random, std::vector<double>& light) const;
+  void GatherFromEnd(const Piece& piece, PathRandom& random, std::vector<double>& light);
+  /// Adds sunlight that a body at the end of the segment sends into it.
+  /// @param body  its albedo in a band. @param to_view  light it sends per light that arrives [1/sr].
+  template <typename Albedo>
+  void GatherFromBody(const Piece& piece, const Vector& point, const Albedo& body, double to_view,
+                      PathRandom& random, std::vector<double>& light);
+  [[nodiscard]] double SunTransmittance(const Vector& point, PathRandom& random) const {
+    return bodies_ == nullptr ? 1.0 : bodies_->SunTransmittance(point, random);
+  }
   [[nodiscard]] double ExpectedLight(const Piece& piece, double distance_m) const;
   [[nodiscard]] double SumOfShares() const;
   [[nodiscard]] double AureoleAlong(const Piece& piece) const;
   [[nodiscard]] static Copies CopiesOf(double promise, double aureole, double u);
-  [[nodiscard]] Piece Continue(const Piece& piece, PathRandom& random);
+  [[nodiscard]] Piece Continue(const Piece& piece, PathRandom& random, std::vector<double>& light);
   [[nodiscard]] std::size_t Draw(double u) const;
-  [[nodiscard]] Vector TurnInAir(const Piece& piece, const Point& point, const Vector& from,
-                                 double choice, double u, double v);
-  [[nodiscard]] Vector TurnAtGround(const Vector& from, double choice, double u, double v);
+  /// Returns the next segment, from a vertex. @param lobe  see PathSurroundings::SunLobe.
+  template <typename Turn>
+  [[nodiscard]] Piece GoOn(const Vector& from, const Turn& turn, const PhaseFunction* lobe,
+                           const std::array<double, 3>& drawn, PathRandom& random,
+                           std::vector<double>& light);
+  /// Adds sunlight from a cloud in a direction drawn from the lobe around the sun.
+  template <typename Turn>
+  void AddSideRay(const Vector& from, const Turn& turn, const PhaseFunction& lobe,
+                  PathRandom& random, std::vector<double>& light) const;
+  void Take(const Turned& turned, const Vector& direction);
   [[nodiscard]] Branch FirstBranch(const Piece& first, double factor) const;
   [[nodiscard]] Responses ResponsesToSun(const Piece& piece) const;
   [[nodiscard]] ScatteringMatrix AerosolMatrix(std::size_t band, double mie_phase,
                                                double cosine) const;
-  [[nodiscard]] double TurnAnalyser(std::size_t band, const PlaneTurn& turn, double molecules,
-                                    double aerosol, double mie_phase, double cosine);
 
   const Scene& scene_;
   const PolarisedScattering* polarised_;
+  const PathSurroundings* bodies_;
   int max_order_;
   int order_ = 1;               // order of the current segment
   std::vector<double> weight_;  // weight of the path so far, for unpolarised light
@@ -355,24 +427,33 @@ class Tracer {
   // are in the weight.
   std::vector<Analyser> analyser_;
   Vector reference_{};
+  double sun_share_ = 1.0;
   std::vector<Branch> branches_;
   std::vector<Point> points_;
-  AirColumns ground_view_;
-  double ground_share_ = 0.0;
+  std::optional<PathMeeting> end_;  // what the segment ends at; no value: it leaves the air
+  AirColumns end_view_;
+  double end_share_ = 0.0;
   double first_shares_ = 0.0;  // sum of the shares of the first segment
 };
 
 void Tracer::Follow(const Piece& first, double factor, PathRandom& random, Gathered& light) {
   branches_.push_back(FirstBranch(first, factor));
   while (!branches_.empty()) {
-    const Branch branch = std::move(branches_.back());
+    Branch branch = std::move(branches_.back());
     branches_.pop_back();
     order_ = branch.order;
     weight_ = branch.weight;
     analyser_ = branch.analyser;
     reference_ = branch.reference;
-    Spread(branch.piece, order_ == 1 ? kFirstStrata : kLaterStrata, random.Next());
-    Gather(branch.piece, order_ == 1 ? light.single : light.total);
+    sun_share_ = branch.sun_share;
+    end_ = MeetingOn(branch.piece, random);
+    if (end_) branch.piece.length_m = end_->distance_m;
+    if (bodies_ != nullptr) {
+      SpreadAmongBodies(branch.piece, random);
+    } else {
+      Spread(branch.piece, order_ == 1 ? kFirstStrata : kLaterStrata, random.Next());
+    }
+    Gather(branch.piece, random, order_ == 1 ? light.single : light.total);
     if (order_ == 1) first_shares_ = SumOfShares();
     if (order_ == max_order_ || first_shares_ <= 0.0) continue;
     const Copies copies =
@@ -382,8 +463,8 @@ void Tracer::Follow(const Piece& first, double factor, PathRandom& random, Gathe
         weight_[band] = branch.weight[band] * copies.factor;
       analyser_ = branch.analyser;
       reference_ = branch.reference;
-      const Piece next = Continue(branch.piece, random);
-      branches_.push_back({next, branch.order + 1, weight_, analyser_, reference_});
+      const Piece next = Continue(branch.piece, random, light.total);
+      branches_.push_back({next, branch.order + 1, weight_, analyser_, reference_, sun_share_});
     }
   }
 }
@@ -404,6 +485,19 @@ Tracer::Branch Tracer::FirstBranch(const Piece& first, double factor) const {
   analyser.row[2][2] = -1.0;
   branch.analyser.assign(scene_.bands(), analyser);
   return branch;
+}
+
+std::optional<PathMeeting> Tracer::MeetingOn(const Piece& piece, PathRandom& random) const {
+  if (bodies_ != nullptr)
+    return bodies_->Meet({piece.origin, piece.direction, piece.length_m, piece.ends_on_ground},
+                         random);
+  if (!piece.ends_on_ground) return std::nullopt;
+  return PathMeeting{piece.length_m, PlanetAt(piece)};
+}
+
+PathSurface Tracer::PlanetAt(const Piece& piece) const {
+  const Vector normal = glm::normalize(piece.origin + piece.length_m * piece.direction);
+  return {scene_.planet_m() * normal, normal, scene_.medium().ground_albedo};
 }
 
 double Tracer::ExpectedLight(const Piece& piece, double distance_m) const {
@@ -428,17 +522,39 @@ void Tracer::Spread(const Piece& piece, int strata, double jitter) {
   for (const DistanceMap& map : maps) {
     for (int i = 0; i < map.strata; ++i) {
       const double distance = map.Distance((i + jitter) / map.strata);
-      const double radius = piece.Radius(distance);
-      points_.push_back({distance, maps.Weight(distance), scene_.RayleighDensity(radius),
-                         scene_.MieDensity(radius), columns_to(piece.s0_m + distance)});
+      points_.push_back(
+          PointAt(piece, distance, maps.Weight(distance), columns_to(piece.s0_m + distance)));
     }
   }
-  if (piece.ends_on_ground) ground_view_ = columns_to(s1);
+  if (end_) end_view_ = columns_to(s1);
 }
 
-void Tracer::Gather(const Piece& piece, std::vector<double>& light) {
+Tracer::Point Tracer::PointAt(const Piece& piece, double distance_m, double length_m,
+                              const AirColumns& view) const {
+  const double radius = piece.Radius(distance_m);
+  return {distance_m, length_m, scene_.RayleighDensity(radius), scene_.MieDensity(radius), view};
+}
+
+// Places points as Spread() does. Paths in clouds have many short segments, whose air matters little:
+// most of them get no point.
+void Tracer::SpreadAmongBodies(const Piece& piece, PathRandom& random) {
+  const double jitter = random.Next();
+  const double probability = scene_.MostOpticalDepth(piece) / kThinAir;
+  if (probability >= 1.0) {
+    Spread(piece, order_ == 1 ? kFirstStrataAmongBodies : kLaterStrataAmongBodies, jitter);
+    return;
+  }
+  points_.clear();
+  if (end_) end_view_ = scene_.ColumnsAlong(piece, piece.length_m);
+  if (random.Next() >= probability) return;
+  const double distance_m = jitter * piece.length_m;
+  points_.push_back(PointAt(piece, distance_m, piece.length_m / probability,
+                            scene_.ColumnsAlong(piece, distance_m)));
+}
+
+void Tracer::Gather(const Piece& piece, PathRandom& random, std::vector<double>& light) {
   const Medium& medium = scene_.medium();
-  const Responses responses = ResponsesToSun(piece);
+  const Responses responses = points_.empty() ? Responses{} : ResponsesToSun(piece);
   for (Point& point : points_) {
     for (std::size_t band = 0; band < weight_.size(); ++band) {
       point.share += weight_[band] * point.length_m *
@@ -447,10 +563,10 @@ void Tracer::Gather(const Piece& piece, std::vector<double>& light) {
                      std::exp(-scene_.OpticalDepth(band, point.view));
     }
     point.share *= ExpectedLight(piece, point.distance_m);
-    GatherFromAir(piece, point, responses, light);
+    GatherFromAir(piece, point, responses, random, light);
   }
-  ground_share_ = 0.0;
-  if (piece.ends_on_ground) GatherFromGround(piece, light);
+  end_share_ = 0.0;
+  if (end_) GatherFromEnd(piece, random, light);
 }
 
 Responses Tracer::ResponsesToSun(const Piece& piece) const {
@@ -483,12 +599,14 @@ ScatteringMatrix Tracer::AerosolMatrix(std::size_t band, double mie_phase, doubl
 
 // Adds sunlight scattered at one point.
 void Tracer::GatherFromAir(const Piece& piece, const Point& point, const Responses& responses,
-                           std::vector<double>& light) const {
+                           PathRandom& random, std::vector<double>& light) const {
   const Medium& medium = scene_.medium();
   const double radius = std::max(piece.Radius(point.distance_m), scene_.planet_m());
-  const double towards_sun =
-      glm::dot(scene_.Raised(piece.origin + point.distance_m * piece.direction), scene_.sun());
+  const Vector place = scene_.Raised(piece.origin + point.distance_m * piece.direction);
+  const double towards_sun = glm::dot(place, scene_.sun());
   if (!scene_.Lit(radius, towards_sun)) return;
+  const double length_m = point.length_m * SunTransmittance(place, random);
+  if (length_m == 0.0) return;
   const AirColumns sun = scene_.ColumnsToSun(radius, towards_sun);
   const AirColumns both{point.view.rayleigh + sun.rayleigh, point.view.mie + sun.mie,
                         point.view.ozone + sun.ozone};
@@ -499,26 +617,42 @@ void Tracer::GatherFromAir(const Piece& piece, const Point& point, const Respons
       const double scattered =
           medium.rayleigh_scattering_per_m[band] * point.rayleigh * responses.molecules[k] +
           medium.mie_scattering_per_m[band] * point.mie * responses.aerosol[k];
-      light[k] += weight_[band] * point.length_m * scattered * transmittance;
+      light[k] += weight_[band] * length_m * scattered * transmittance;
     }
   }
 }
 
-// Adds sunlight reflected at the end of the segment.
-void Tracer::GatherFromGround(const Piece& piece, std::vector<double>& light) {
-  const Medium& medium = scene_.medium();
-  const double towards_sun =
-      glm::dot(piece.origin + piece.length_m * piece.direction, scene_.sun());
-  const bool lit = towards_sun > 0.0;
-  const AirColumns sun = lit ? scene_.ColumnsToSun(scene_.planet_m(), towards_sun) : AirColumns{};
-  const double mu_s = lit ? std::min(towards_sun / scene_.planet_m(), 1.0) : 0.0;
+// Adds sunlight from the body at the end of the segment.
+void Tracer::GatherFromEnd(const Piece& piece, PathRandom& random, std::vector<double>& light) {
+  if (const auto* surface = std::get_if<PathSurface>(&end_->body)) {
+    const double mu_s = std::clamp(glm::dot(surface->normal, scene_.sun()), 0.0, 1.0);
+    GatherFromBody(
+        piece, surface->point, [&](std::size_t band) { return surface->albedo[band]; }, mu_s / kPi,
+        random, light);
+    return;
+  }
+  const PathScatterer& cloud = std::get<PathScatterer>(end_->body);
+  const double nu = glm::dot(piece.direction, scene_.sun());
+  GatherFromBody(
+      piece, scene_.Raised(piece.origin + piece.length_m * piece.direction),
+      [&](std::size_t) { return cloud.albedo; }, sun_share_ * Phase(*cloud.phase, nu), random,
+      light);
+}
+
+template <typename Albedo>
+void Tracer::GatherFromBody(const Piece& piece, const Vector& point, const Albedo& body,
+                            double to_view, PathRandom& random, std::vector<double>& light) {
+  const double radius = glm::length(point), towards_sun = glm::dot(point, scene_.sun());
+  const bool faces = to_view > 0.0 && scene_.Lit(radius, towards_sun);
+  const double lit = faces ? to_view * SunTransmittance(point, random) : 0.0;
+  const AirColumns sun = lit > 0.0 ? scene_.ColumnsToSun(radius, towards_sun) : AirColumns{};
   const double expected = ExpectedLight(piece, piece.length_m);
   for (std::size_t band = 0; band < weight_.size(); ++band) {
-    const double reflected = weight_[band] * medium.ground_albedo[band] *
-                             std::exp(-scene_.OpticalDepth(band, ground_view_));
-    ground_share_ += reflected * expected;
-    if (!lit) continue;
-    const double radiance = reflected * mu_s / kPi * std::exp(-scene_.OpticalDepth(band, sun));
+    const double sent =
+        weight_[band] * body(band) * std::exp(-scene_.OpticalDepth(band, end_view_));
+    end_share_ += sent * expected;
+    if (!(lit > 0.0)) continue;
+    const double radiance = sent * lit * std::exp(-scene_.OpticalDepth(band, sun));
     light[band] += radiance;
     for (std::size_t k = 1; k * weight_.size() < light.size(); ++k)
       light[k * weight_.size() + band] += radiance * analyser_[band].row[k][0];
@@ -527,9 +661,9 @@ void Tracer::GatherFromGround(const Piece& piece, std::vector<double>& light) {
 
 // Draws the point from which the path continues, with probabilities proportional to the shares.
 std::size_t Tracer::Draw(double u) const {
-  double left = u * SumOfShares() - ground_share_;
-  if (left < 0.0) return kGround;
-  std::size_t last = kGround;
+  double left = u * SumOfShares() - end_share_;
+  if (left < 0.0) return kEnd;
+  std::size_t last = kEnd;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (points_[i].share <= 0.0) continue;
     last = i;
@@ -540,7 +674,7 @@ std::size_t Tracer::Draw(double u) const {
 }
 
 double Tracer::SumOfShares() const {
-  double sum = ground_share_;
+  double sum = end_share_;
   for (const Point& point : points_) sum += point.share;
   return sum;
 }
@@ -565,30 +699,6 @@ Tracer::Copies Tracer::CopiesOf(double promise, double aureole, double u) {
   }
   const double count = std::clamp(std::floor(promise / kSplitShare), 1.0, kMostCopies);
   return {static_cast<int>(count), 1.0 / count};
-}
-
-// Returns the next segment: from a point drawn with probability proportional to the shares, in a
-// sampled direction.
-Piece Tracer::Continue(const Piece& piece, PathRandom& random) {
-  const Medium& medium = scene_.medium();
-  const std::size_t drawn = Draw(random.Next());
-  const double choice = random.Next();
-  const double u = random.Next();
-  const double v = random.Next();
-  const bool at_ground = drawn == kGround;
-  const double probability = (at_ground ? ground_share_ : points_[drawn].share) / SumOfShares();
-  const AirColumns& view = at_ground ? ground_view_ : points_[drawn].view;
-  for (std::size_t band = 0; band < weight_.size(); ++band) {
-    weight_[band] *= std::exp(-scene_.OpticalDepth(band, view)) / probability;
-    // In air, TurnInAir applies the scattering coefficient together with the phase function.
-    weight_[band] *= at_ground ? medium.ground_albedo[band] : points_[drawn].length_m;
-  }
-  const double distance = at_ground ? piece.length_m : points_[drawn].distance_m;
-  Vector from = piece.origin + distance * piece.direction;
-  from = at_ground ? scene_.planet_m() / glm::length(from) * from : scene_.Raised(from);
-  const Vector direction = at_ground ? TurnAtGround(from, choice, u, v)
-                                     : TurnInAir(piece, points_[drawn], from, choice, u, v);
-  return scene_.PieceFrom(from, direction);
 }
 
 /// Weights, in a mixture of directions, of the twilight glow and of the aerosol's lobe around the
@@ -666,68 +776,109 @@ class Guide {
   Glow glow_;
 };
 
-Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& from, double choice,
-                         double u, double v) {
-  const Medium& medium = scene_.medium();
-  double by_molecules = 0.0, by_aerosol = 0.0;
-  std::vector<double> share(weight_.size());  // share of each band in the aerosol's scattering
-  for (std::size_t band = 0; band < weight_.size(); ++band) {
-    by_molecules += weight_[band] * medium.rayleigh_scattering_per_m[band] * point.rayleigh;
-    share[band] = weight_[band] * medium.mie_scattering_per_m[band] * point.mie;
-    by_aerosol += share[band];
+/// Scattering by the air at a point of a segment.
+class Tracer::AirTurn {
+ public:
+  AirTurn(const Tracer& path, const Piece& piece, const Point& point, const Vector& from)
+      : path_(path),
+        direction_(piece.direction),
+        point_(point),
+        share_(SharesOf(path, point)),
+        guidance_(GuidanceAt(path.scene_, from, path.order_)),
+        guide_(path.scene_, from, guidance_, share_) {
+    double by_molecules = 0.0, by_aerosol = 0.0;
+    for (std::size_t band = 0; band < share_.size(); ++band) {
+      by_molecules += path.weight_[band] * Molecules(band);
+      by_aerosol += path.weight_[band] * Aerosol(band);
+    }
+    molecules_ = guide_.Unguided() * by_molecules / (by_molecules + by_aerosol);
+    aerosol_ = guide_.Unguided() - molecules_;
   }
-  if (!(by_aerosol > 0.0)) std::fill(share.begin(), share.end(), 1.0);
-  const Guidance guidance = GuidanceAt(scene_, from, order_);
-  const Guide guide(scene_, from, guidance, share);
-  const double molecules = guide.Unguided() * by_molecules / (by_molecules + by_aerosol);
-  const double aerosol = guide.Unguided() - molecules;
-  std::optional<Vector> guided = guide.Sample(choice, u, v);
-  if (!guided) {
-    const double rest = choice - (guidance.glow + guidance.aureole + molecules);
-    const double cosine =
-        rest < 0.0 ? SampleCosine(kMolecules, v) : SampleAerosol(medium, share, rest / aerosol, v);
-    guided = FrameAround(piece.direction).Direction(cosine, 2.0 * kPi * u);
-  }
-  const Vector direction = *guided;
-  const double cosine = std::clamp(glm::dot(direction, piece.direction), -1.0, 1.0);
-  const std::vector<double> rayleigh_phase = RayleighPhaseValues(medium, cosine);
-  const std::vector<double> mie_phase = MiePhaseValues(medium, cosine);
-  const double density = guide.Density(
-      molecules * Phase(kMolecules, cosine) + aerosol * MeanBy(share, mie_phase), direction);
-  PlaneTurn turn;
-  if (polarised_ != nullptr) turn = TurnOf(piece.direction, reference_, direction);
-  for (std::size_t band = 0; band < weight_.size(); ++band) {
-    const double by_air = medium.rayleigh_scattering_per_m[band] * point.rayleigh;
-    const double by_mie = medium.mie_scattering_per_m[band] * point.mie;
-    weight_[band] *= (polarised_ == nullptr
-                          ? by_air * rayleigh_phase[band] + by_mie * mie_phase[band]
-                          : TurnAnalyser(band, turn, by_air, by_mie, mie_phase[band], cosine)) /
-                     density;
-  }
-  reference_ = turn.reference;
-  return direction;
-}
+  AirTurn(const AirTurn&) = delete;  // the guide refers to share_
+  AirTurn& operator=(const AirTurn&) = delete;
 
-// Applies a turn to the analyser of one band; returns its weight for unpolarised light [1/(m sr)].
-// @param molecules, aerosol  scattering coefficients [1/m].
-double Tracer::TurnAnalyser(std::size_t band, const PlaneTurn& turn, double molecules,
-                            double aerosol, double mie_phase, double cosine) {
-  const Analyser by_molecules =
-      Scattered(analyser_[band], turn, RayleighMatrix(polarised_->depolarisation[band], cosine));
-  const Analyser by_aerosol =
-      Scattered(analyser_[band], turn, AerosolMatrix(band, mie_phase, cosine));
-  Analyser& sum = analyser_[band];
-  for (std::size_t k = 0; k < kStokes; ++k) {
-    for (std::size_t i = 0; i < 4; ++i)
-      sum.row[k][i] = molecules * by_molecules.row[k][i] + aerosol * by_aerosol.row[k][i];
+  [[nodiscard]] Vector Sample(const std::array<double, 3>& drawn) const {
+    const auto [choice, u, v] = drawn;
+    if (const std::optional<Vector> guided = guide_.Sample(choice, u, v)) return *guided;
+    const double rest = choice - (guidance_.glow + guidance_.aureole + molecules_);
+    const double cosine = rest < 0.0
+                              ? SampleCosine(kMolecules, v)
+                              : SampleAerosol(path_.scene_.medium(), share_, rest / aerosol_, v);
+    return FrameAround(direction_).Direction(cosine, 2.0 * kPi * u);
   }
-  const double worth = sum.row[0][0];
-  if (!(worth > 0.0)) return 0.0;
-  for (auto& row : sum.row) {
-    for (double& entry : row) entry /= worth;
+
+  [[nodiscard]] Turned At(const Vector& direction) const {
+    const Medium& medium = path_.scene_.medium();
+    const double cosine = std::clamp(glm::dot(direction, direction_), -1.0, 1.0);
+    const std::vector<double> mie_phase = MiePhaseValues(medium, cosine);
+    const double unguided =
+        molecules_ * Phase(kMolecules, cosine) + aerosol_ * MeanBy(share_, mie_phase);
+    Turned turned{guide_.Density(unguided, direction), std::vector<double>(share_.size())};
+    if (path_.polarised_ != nullptr) {
+      AddAnalysers(direction, cosine, mie_phase, turned);
+      return turned;
+    }
+    const std::vector<double> rayleigh_phase = RayleighPhaseValues(medium, cosine);
+    for (std::size_t band = 0; band < share_.size(); ++band)
+      turned.value[band] = Molecules(band) * rayleigh_phase[band] + Aerosol(band) * mie_phase[band];
+    return turned;
   }
-  return worth;
-}
+
+ private:
+  /// Returns the share of each band in the aerosol's scattering.
+  static std::vector<double> SharesOf(const Tracer& path, const Point& point) {
+    std::vector<double> share(path.weight_.size());
+    double sum = 0.0;
+    for (std::size_t band = 0; band < share.size(); ++band) {
+      share[band] =
+          path.weight_[band] * path.scene_.medium().mie_scattering_per_m[band] * point.mie;
+      sum += share[band];
+    }
+    if (!(sum > 0.0)) std::fill(share.begin(), share.end(), 1.0);
+    return share;
+  }
+  [[nodiscard]] double Molecules(std::size_t band) const {
+    return path_.scene_.medium().rayleigh_scattering_per_m[band] * point_.rayleigh;
+  }
+  [[nodiscard]] double Aerosol(std::size_t band) const {
+    return path_.scene_.medium().mie_scattering_per_m[band] * point_.mie;
+  }
+
+  // Adds the analysers before the turn; the value is their weight for unpolarised light.
+  void AddAnalysers(const Vector& direction, double cosine, const std::vector<double>& mie_phase,
+                    Turned& turned) const {
+    const PlaneTurn turn = TurnOf(direction_, path_.reference_, direction);
+    turned.reference = turn.reference;
+    turned.analyser.resize(share_.size());
+    for (std::size_t band = 0; band < share_.size(); ++band) {
+      const Analyser& after = path_.analyser_[band];
+      const Analyser by_molecules =
+          Scattered(after, turn, RayleighMatrix(path_.polarised_->depolarisation[band], cosine));
+      const Analyser by_aerosol =
+          Scattered(after, turn, path_.AerosolMatrix(band, mie_phase[band], cosine));
+      Analyser& sum = turned.analyser[band];
+      for (std::size_t k = 0; k < kStokes; ++k) {
+        for (std::size_t i = 0; i < 4; ++i)
+          sum.row[k][i] =
+              Molecules(band) * by_molecules.row[k][i] + Aerosol(band) * by_aerosol.row[k][i];
+      }
+      const double worth = sum.row[0][0];
+      if (!(worth > 0.0)) continue;
+      turned.value[band] = worth;
+      for (auto& row : sum.row) {
+        for (double& entry : row) entry /= worth;
+      }
+    }
+  }
+
+  const Tracer& path_;
+  Vector direction_;
+  const Point& point_;
+  std::vector<double> share_;
+  Guidance guidance_;
+  Guide guide_;
+  double molecules_, aerosol_;  // probabilities of unguided directions
+};
 
 /// A direction sampled for the irradiance of a plane, and its cosine divided by its probability
 /// density.
@@ -736,32 +887,179 @@ struct PlaneDirection {
   double weight;
 };
 
-// Samples the cosine law, the glow of twilight and the aerosol's lobe around the sun. Without the
-// lobe, few paths would find the light of a narrow forward peak, and their mean and its standard
-// error would both be too small.
-PlaneDirection DirectionAbove(const Scene& scene, const Vector& from, const Vector& normal,
-                              int order, double choice, double u, double v) {
-  const bool faces_sky = glm::dot(from, normal) > 0.0;
-  const Guidance guidance = faces_sky ? GuidanceAt(scene, from, order) : Guidance{0.0, 0.0};
-  const std::vector<double> share(scene.bands(), 1.0);
-  const Guide guide(scene, from, guidance, share);
-  const Vector direction =
-      guide.Sample(choice, u, v)
-          .value_or(FrameAround(normal).Direction(std::sqrt(v), 2.0 * kPi * u));
-  const double cosine = std::max(glm::dot(direction, normal), 0.0);
-  const double density = guide.Density(guide.Unguided() * cosine / kPi, direction);
-  return {direction, density > 0.0 ? cosine / density : 0.0};
+/// Sampling of the light that arrives at a plane: by the cosine law, the glow of twilight and the
+/// aerosol's lobe around the sun. Without the lobe, few paths would find the light of a narrow
+/// forward peak, and their mean and its standard error would both be too small.
+class PlaneSampling {
+ public:
+  PlaneSampling(const Scene& scene, const Vector& from, const Vector& normal, int order)
+      : normal_(normal),
+        share_(scene.bands(), 1.0),
+        guide_(scene, from,
+               glm::dot(from, normal) > 0.0 ? GuidanceAt(scene, from, order) : Guidance{0.0, 0.0},
+               share_) {}
+  PlaneSampling(const PlaneSampling&) = delete;  // the guide refers to share_
+  PlaneSampling& operator=(const PlaneSampling&) = delete;
+
+  [[nodiscard]] Vector Sample(const std::array<double, 3>& drawn) const {
+    const auto [choice, u, v] = drawn;
+    return guide_.Sample(choice, u, v)
+        .value_or(FrameAround(normal_).Direction(std::sqrt(v), 2.0 * kPi * u));
+  }
+  [[nodiscard]] double Cosine(const Vector& direction) const {
+    return std::max(glm::dot(direction, normal_), 0.0);
+  }
+  [[nodiscard]] double Density(const Vector& direction) const {
+    return guide_.Density(guide_.Unguided() * Cosine(direction) / kPi, direction);
+  }
+  [[nodiscard]] PlaneDirection Drawn(const std::array<double, 3>& drawn) const {
+    const Vector direction = Sample(drawn);
+    const double density = Density(direction);
+    return {direction, density > 0.0 ? Cosine(direction) / density : 0.0};
+  }
+
+ private:
+  Vector normal_;
+  std::vector<double> share_;
+  Guide guide_;
+};
+
+/// Reflection by a Lambertian surface.
+class Tracer::SurfaceTurn {
+ public:
+  SurfaceTurn(const Tracer& path, const PathSurface& surface)
+      : bands_(path.weight_.size()),
+        sampling_(path.scene_, surface.point, surface.normal, path.order_) {}
+
+  [[nodiscard]] Vector Sample(const std::array<double, 3>& drawn) const {
+    return sampling_.Sample(drawn);
+  }
+  [[nodiscard]] Turned At(const Vector& direction) const {
+    return {sampling_.Density(direction),
+            std::vector<double>(bands_, sampling_.Cosine(direction) / kPi)};
+  }
+
+ private:
+  std::size_t bands_;
+  PlaneSampling sampling_;
+};
+
+/// Scattering by a cloud.
+class Tracer::CloudTurn {
+ public:
+  CloudTurn(const Tracer& path, const Vector& direction, const PhaseFunction& phase)
+      : bands_(path.weight_.size()), direction_(direction), phase_(phase) {}
+
+  [[nodiscard]] Vector Sample(const std::array<double, 3>& drawn) const {
+    return FrameAround(direction_).Direction(SampleCosine(phase_, drawn[2]), 2.0 * kPi * drawn[1]);
+  }
+  [[nodiscard]] Turned At(const Vector& direction) const {
+    const double value = Phase(phase_, glm::dot(direction_, direction));
+    return {value, std::vector<double>(bands_, value)};
+  }
+
+ private:
+  std::size_t bands_;
+  Vector direction_;
+  const PhaseFunction& phase_;
+};
+
+// Returns the next segment: from a point drawn with probability proportional to the shares, in a
+// sampled direction.
+Piece Tracer::Continue(const Piece& piece, PathRandom& random, std::vector<double>& light) {
+  const std::size_t drawn = Draw(random.Next());
+  const double choice = random.Next();
+  const double u = random.Next();
+  const double v = random.Next();
+  const std::array<double, 3> numbers{choice, u, v};
+  const bool at_end = drawn == kEnd;
+  const double probability = (at_end ? end_share_ : points_[drawn].share) / SumOfShares();
+  const AirColumns& view = at_end ? end_view_ : points_[drawn].view;
+  for (std::size_t band = 0; band < weight_.size(); ++band)
+    weight_[band] *= std::exp(-scene_.OpticalDepth(band, view)) / probability;
+  const double distance = at_end ? piece.length_m : points_[drawn].distance_m;
+  const Vector from = scene_.Raised(piece.origin + distance * piece.direction);
+  if (!at_end) {
+    for (double& weight : weight_) weight *= points_[drawn].length_m;
+    const PhaseFunction* lobe = bodies_ != nullptr ? bodies_->SunLobe(random) : nullptr;
+    return GoOn(from, AirTurn(*this, piece, points_[drawn], from), lobe, numbers, random, light);
+  }
+  if (const auto* surface = std::get_if<PathSurface>(&end_->body)) {
+    for (std::size_t band = 0; band < weight_.size(); ++band)
+      weight_[band] *= surface->albedo[band];
+    const PhaseFunction* lobe = bodies_ != nullptr ? bodies_->SunLobe(random) : nullptr;
+    return GoOn(surface->point, SurfaceTurn(*this, *surface), lobe, numbers, random, light);
+  }
+  const PathScatterer& cloud = std::get<PathScatterer>(end_->body);
+  for (double& weight : weight_) weight *= cloud.albedo;
+  return GoOn(from, CloudTurn(*this, piece.direction, *cloud.phase), cloud.phase, numbers, random,
+              light);
 }
 
-Vector Tracer::TurnAtGround(const Vector& from, double choice, double u, double v) {
-  const PlaneDirection drawn =
-      DirectionAbove(scene_, from, glm::normalize(from), order_, choice, u, v);
-  for (double& weight : weight_) weight *= drawn.weight / kPi;
-  for (Analyser& analyser : analyser_) {
-    for (auto& row : analyser.row) row = {row[0]};  // the ground depolarises
+template <typename Turn>
+Piece Tracer::GoOn(const Vector& from, const Turn& turn, const PhaseFunction* lobe,
+                   const std::array<double, 3>& drawn, PathRandom& random,
+                   std::vector<double>& light) {
+  if (lobe != nullptr) AddSideRay(from, turn, *lobe, random, light);
+  const Vector direction = turn.Sample(drawn);
+  const Turned turned = turn.At(direction);
+  Take(turned, direction);
+  sun_share_ = 1.0;
+  if (lobe != nullptr && turned.density > 0.0) {
+    sun_share_ =
+        turned.density / (turned.density + Phase(*lobe, glm::dot(direction, scene_.sun())));
   }
-  reference_ = FrameAround(drawn.direction).x;
-  return drawn.direction;
+  return scene_.PieceFrom(from, direction);
+}
+
+void Tracer::Take(const Turned& turned, const Vector& direction) {
+  for (std::size_t band = 0; band < weight_.size(); ++band)
+    weight_[band] *= turned.density > 0.0 ? turned.value[band] / turned.density : 0.0;
+  if (polarised_ == nullptr) return;
+  if (!turned.analyser.empty()) {
+    analyser_ = turned.analyser;
+    reference_ = turned.reference;
+    return;
+  }
+  for (Analyser& analyser : analyser_) {
+    for (auto& row : analyser.row) row = {row[0]};  // the vertex depolarises
+  }
+  reference_ = FrameAround(direction).x;
+}
+
+// The side ray and the next segment of the path share the sun's light in clouds by the balance
+// heuristic: see renderer/cloud_light/cloud_path_tracer.h.
+template <typename Turn>
+void Tracer::AddSideRay(const Vector& from, const Turn& turn, const PhaseFunction& lobe,
+                        PathRandom& random, std::vector<double>& light) const {
+  const double u = random.Next();
+  const Vector direction =
+      FrameAround(scene_.sun()).Direction(SampleCosine(lobe, u), 2.0 * kPi * random.Next());
+  const Piece side = scene_.PieceFrom(from, direction);
+  const std::optional<PathMeeting> meeting = MeetingOn(side, random);
+  const auto* cloud = meeting ? std::get_if<PathScatterer>(&meeting->body) : nullptr;
+  if (cloud == nullptr) return;
+  const Vector point = scene_.Raised(from + meeting->distance_m * direction);
+  const double radius = glm::length(point), towards_sun = glm::dot(point, scene_.sun());
+  if (!scene_.Lit(radius, towards_sun)) return;
+  const double visible = SunTransmittance(point, random);
+  if (visible == 0.0) return;
+  const Turned turned = turn.At(direction);
+  const double to_sun = glm::dot(direction, scene_.sun());
+  const double sent = cloud->albedo * Phase(*cloud->phase, to_sun) * visible /
+                      (turned.density + Phase(lobe, to_sun));
+  const AirColumns view = scene_.ColumnsAlong(side, meeting->distance_m);
+  const AirColumns sun = scene_.ColumnsToSun(radius, towards_sun);
+  const std::size_t bands = weight_.size();
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double radiance =
+        weight_[band] * turned.value[band] * sent *
+        std::exp(-scene_.OpticalDepth(band, view) - scene_.OpticalDepth(band, sun));
+    light[band] += radiance;
+    const std::vector<Analyser>& analyser = turned.analyser.empty() ? analyser_ : turned.analyser;
+    for (std::size_t k = 1; k * bands < light.size(); ++k)
+      light[k * bands + band] += radiance * analyser[band].row[k][0];
+  }
 }
 
 /// Means over batches and their standard errors.
@@ -812,19 +1110,18 @@ double WorstError(const Estimate& estimate, std::size_t bands) {
 
 // Follows batches of paths until the error is small enough. `follow` follows one path.
 template <typename FollowPath>
-Estimate Run(const Scene& scene, const PolarisedScattering* polarised, const PathOptions& options,
-             const FollowPath& follow) {
+Estimate Run(const PathMatter& matter, const PathOptions& options, const FollowPath& follow) {
   constexpr std::size_t kFirstBatches = 32;
   const std::size_t most =
       std::max((options.max_paths + kPathsPerBatch - 1) / kPathsPerBatch, kFirstBatches);
-  const std::vector<double> zeros((polarised == nullptr ? 1 : kStokes) * scene.bands(), 0.0);
+  const std::vector<double> zeros = matter.NoLight();
   std::vector<Gathered> batches;
   for (std::size_t wanted = kFirstBatches;;) {
     const std::size_t done = batches.size();
     batches.resize(wanted);
     tbb::parallel_for(done, wanted, [&](std::size_t batch) {
       if (options.stopped()) return;
-      Tracer tracer(scene, polarised, options.max_order);
+      Tracer tracer(matter, options.max_order);
       Gathered sum{zeros, zeros};
       for (std::size_t path = 0; path < kPathsPerBatch; ++path) {
         PathRandom random(options.seed, batch, path);
@@ -838,7 +1135,7 @@ Estimate Run(const Scene& scene, const PolarisedScattering* polarised, const Pat
     });
     if (options.stopped()) return {zeros, zeros, zeros, zeros, 0, false};
     Estimate estimate = EstimateOf(batches);
-    const double worst = WorstError(estimate, scene.bands());
+    const double worst = WorstError(estimate, matter.scene.bands());
     estimate.converged = worst <= options.relative_error;
     if (estimate.converged || wanted == most) return estimate;
     const double ratio = worst / std::max(options.relative_error, 1e-9);
@@ -924,7 +1221,7 @@ PathTracedRadiance TraceRadiance(const Medium& medium, const ViewRay& ray,
   const Scene scene(medium, SunDirection(ray.mu_s));
   const Piece piece = ViewPiece(medium, ray, extent);
   Estimate estimate =
-      Run(scene, nullptr, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+      Run({scene}, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
         tracer.Follow(piece, 1.0, random, light);
       });
   return {std::move(estimate.total),
@@ -944,7 +1241,7 @@ PathTracedStokes TraceStokes(const Medium& medium, const PolarisedScattering& sc
   const Scene scene(medium, SunDirection(ray.mu_s));
   const Piece piece = ViewPiece(medium, ray, extent);
   const Estimate estimate =
-      Run(scene, &scattering, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+      Run({scene, &scattering}, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
         tracer.Follow(piece, 1.0, random, light);
       });
   const auto part = [&](std::size_t k) {
@@ -969,19 +1266,85 @@ PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m, do
   const Vector from(0.0, 0.0, medium.planet_radius_m + altitude_m);
   const Vector normal(0.0, 0.0, side == PlaneSide::kFromAbove ? 1.0 : -1.0);
   const PolarisedScattering polarised = ScatteringOf(medium);
-  Estimate estimate =
-      Run(scene, medium.polarised ? &polarised : nullptr, options,
-          [&](Tracer& tracer, PathRandom& random, Gathered& light) {
-            const double choice = random.Next();
-            const double u = random.Next();
-            const double v = random.Next();
-            const PlaneDirection drawn = DirectionAbove(scene, from, normal, 0, choice, u, v);
-            if (drawn.weight <= 0.0) return;
-            tracer.Follow(scene.PieceFrom(from, drawn.direction), drawn.weight, random, light);
-          });
+  Estimate estimate = Run(
+      {scene, medium.polarised ? &polarised : nullptr}, options,
+      [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+        const double choice = random.Next();
+        const double u = random.Next();
+        const double v = random.Next();
+        const PlaneDirection drawn = PlaneSampling(scene, from, normal, 0).Drawn({choice, u, v});
+        if (drawn.weight <= 0.0) return;
+        tracer.Follow(scene.PieceFrom(from, drawn.direction), drawn.weight, random, light);
+      });
   estimate.total.resize(scene.bands());  // Q and U are not defined for irradiance
   estimate.total_error.resize(scene.bands());
   return {std::move(estimate.total), std::move(estimate.total_error), estimate.paths,
+          estimate.converged};
+}
+
+struct AirPathTracer::State {
+  State(const Medium& medium, const Vector& to_sun, const PathSurroundings* surroundings)
+      : scene(medium, to_sun), polarised(ScatteringOf(medium)), bodies(surroundings) {}
+
+  [[nodiscard]] PathMatter matter() const {
+    return {scene, scene.medium().polarised ? &polarised : nullptr, bodies};
+  }
+  /// Returns the part of a ray inside the shell from its origin on; no value for a ray outside.
+  [[nodiscard]] std::optional<Piece> PieceOf(const Vector& origin, const Vector& direction) const {
+    const double s = glm::dot(origin, direction), radius2 = glm::dot(origin, origin);
+    const double top2 = scene.top_m() * scene.top_m();
+    if (radius2 <= top2) return scene.PieceFrom(origin, direction);
+    const double half2 = top2 - (radius2 - s * s);
+    if (s >= 0.0 || half2 <= 0.0) return std::nullopt;
+    return scene.PieceFrom(origin - (s + std::sqrt(half2)) * direction, direction);
+  }
+
+  Scene scene;
+  PolarisedScattering polarised;
+  const PathSurroundings* bodies;
+};
+
+AirPathTracer::AirPathTracer(const Medium& medium, const glm::dvec3& to_sun,
+                             const PathSurroundings* surroundings) {
+  Validate(medium);
+  if (!(std::abs(glm::length(to_sun) - 1.0) <= 1e-6)) {
+    throw InputError(
+        fmt::format("the direction to the sun has the length {}; it must be a unit vector",
+                    glm::length(to_sun)));
+  }
+  state_ = std::make_unique<const State>(medium, to_sun, surroundings);
+}
+AirPathTracer::~AirPathTracer() = default;
+
+std::size_t AirPathTracer::bands() const { return state_->scene.bands(); }
+
+std::vector<double> AirPathTracer::OnePath(const glm::dvec3& origin, const glm::dvec3& direction,
+                                           PathRandom& random, int max_order) const {
+  const PathMatter matter = state_->matter();
+  Gathered light{matter.NoLight(), matter.NoLight()};
+  if (const std::optional<Piece> piece = state_->PieceOf(origin, direction))
+    Tracer(matter, max_order).Follow(*piece, 1.0, random, light);
+  for (std::size_t band = 0; band < bands(); ++band) light.total[band] += light.single[band];
+  light.total.resize(bands());  // I of the Stokes parameters
+  return light.total;
+}
+
+PathTracedRadiance AirPathTracer::Radiance(const glm::dvec3& origin, const glm::dvec3& direction,
+                                           const PathOptions& options) const {
+  RequireValid(options);
+  const std::optional<Piece> piece = state_->PieceOf(origin, direction);
+  Estimate estimate =
+      Run(state_->matter(), options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+        if (piece) tracer.Follow(*piece, 1.0, random, light);
+      });
+  for (auto* values :
+       {&estimate.total, &estimate.single, &estimate.total_error, &estimate.single_error})
+    values->resize(bands());  // I of the Stokes parameters
+  return {std::move(estimate.total),
+          std::move(estimate.single),
+          std::move(estimate.total_error),
+          std::move(estimate.single_error),
+          estimate.paths,
           estimate.converged};
 }
 

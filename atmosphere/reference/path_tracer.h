@@ -11,6 +11,10 @@
 // the aerosol's lobe around the sun and, in twilight, the glow along the sunward horizon. Paths end
 // by Russian roulette.
 //
+// Clouds and mountains among the air (path_surroundings.h) end segments: a cloud where a free flight
+// through it collides. From each vertex a side ray looks for a cloud near the sun, where its phase
+// function has a peak, and shares that light with the path.
+//
 // The estimate is unbiased except for the tables of columns (1e-6, column_table.h). The shared
 // sources, the closed forms and the tables of lut/ are not used, except for the values of phase
 // functions. The sun is a point, there is no refraction, and the ground is Lambertian and lit where
@@ -22,11 +26,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <memory>
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/ray/ray.h"
+#include "atmosphere/reference/path_sampling.h"
+#include "atmosphere/reference/path_surroundings.h"
 
 namespace alpenglow::atmosphere::reference {
 
@@ -102,5 +111,38 @@ struct PathTracedIrradiance {
 [[nodiscard]] PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m,
                                                    double mu_s, PlaneSide side,
                                                    const PathOptions& options = {});
+
+/// Traces paths from any point, also among clouds and mountains (path_surroundings.h). Points are
+/// metres from the planet's centre. A path that scatters or is reflected may see a cloud near the
+/// sun, where the phase function of clouds has its peak: a side ray in that lobe shares the light
+/// with the path, from each of its vertices. Light is polarised if the medium's is. Immutable; safe
+/// to use from many threads.
+class AirPathTracer {
+ public:
+  /// Throws InputError for a medium that is not valid, and a direction that is not a unit vector.
+  /// @param surroundings  must outlive the tracer; null: the planet's sphere with the albedo of the
+  ///     medium.
+  AirPathTracer(const Medium& medium, const glm::dvec3& to_sun,
+                const PathSurroundings* surroundings);
+  AirPathTracer(const AirPathTracer&) = delete;
+  AirPathTracer& operator=(const AirPathTracer&) = delete;
+  ~AirPathTracer();
+
+  [[nodiscard]] std::size_t bands() const;
+  /// Returns the light of one path, by band; its mean over random numbers is the radiance for unit
+  /// solar irradiance [1/sr].
+  /// @param direction  unit.
+  [[nodiscard]] std::vector<double> OnePath(const glm::dvec3& origin, const glm::dvec3& direction,
+                                            PathRandom& random,
+                                            int max_order = std::numeric_limits<int>::max()) const;
+  /// Returns the radiance along a ray, as TraceRadiance does. Throws InputError for options that are
+  /// not valid.
+  [[nodiscard]] PathTracedRadiance Radiance(const glm::dvec3& origin, const glm::dvec3& direction,
+                                            const PathOptions& options = {}) const;
+
+ private:
+  struct State;
+  std::unique_ptr<const State> state_;
+};
 
 }  // namespace alpenglow::atmosphere::reference
