@@ -31,6 +31,8 @@ constexpr int kLaterStrata = 4;  // strata of each map along later segments
 // Among other bodies a point costs a ray to the sun through them, and a path costs more than the
 // points of its first segments.
 constexpr int kFirstStrataAmongBodies = 3, kLaterStrataAmongBodies = 2;
+// Probability that a vertex among clouds has a side path.
+constexpr double kSidePaths = 0.2;
 // Segments among bodies of a smaller optical depth of air have one point, or none at random.
 constexpr double kThinAir = 0.02;
 // If the expected contribution of the next segment is below kRouletteShare times that of the first
@@ -338,6 +340,40 @@ struct Turned {
   Vector reference{};
 };
 
+/// Directions around the sun in which clouds are bright: after one scattering by their phase function,
+/// and after several.
+class SunLobe {
+ public:
+  SunLobe(const PhaseFunction& cloud, const Vector& sun) : cloud_(cloud), sun_(sun) {}
+
+  /// Returns the density of the phase function of clouds around the sun.
+  [[nodiscard]] double Peak(const Vector& direction) const {
+    return Phase(cloud_, glm::dot(direction, sun_));
+  }
+  [[nodiscard]] Vector SampleOfPeak(PathRandom& random) const {
+    return Around(cloud_, random.Next(), random);
+  }
+  /// Returns the density of the mean of the phase function and a wide lobe.
+  [[nodiscard]] double Mean(const Vector& direction) const {
+    return 0.5 * (Peak(direction) + Phase(kWide, glm::dot(direction, sun_)));
+  }
+  [[nodiscard]] Vector SampleOfMean(PathRandom& random) const {
+    const double u = 2.0 * random.Next();
+    return u < 1.0 ? Around(cloud_, u, random) : Around(kWide, u - 1.0, random);
+  }
+
+ private:
+  static constexpr double kWideG = 0.9;
+  static inline const PhaseFunction kWide{.kind = PhaseKind::kHenyeyGreenstein, .g = kWideG};
+
+  [[nodiscard]] Vector Around(const PhaseFunction& phase, double u, PathRandom& random) const {
+    return FrameAround(sun_).Direction(SampleCosine(phase, u), 2.0 * kPi * random.Next());
+  }
+
+  const PhaseFunction& cloud_;
+  Vector sun_;
+};
+
 /// Follows paths, one at a time.
 class Tracer {
  public:
@@ -407,11 +443,15 @@ class Tracer {
   [[nodiscard]] Piece GoOn(const Vector& from, const Turn& turn, const PhaseFunction* lobe,
                            const std::array<double, 3>& drawn, PathRandom& random,
                            std::vector<double>& light);
-  /// Adds sunlight from a cloud in a direction drawn from the lobe around the sun.
+  /// Adds a path in a direction around the sun.
   template <typename Turn>
-  void AddSideRay(const Vector& from, const Turn& turn, const PhaseFunction& lobe,
-                  PathRandom& random, std::vector<double>& light) const;
-  void Take(const Turned& turned, const Vector& direction);
+  void AddSidePath(const Vector& from, const Turn& turn, const SunLobe& lobe, PathRandom& random);
+  /// Adds sunlight from a cloud in a direction around the sun.
+  template <typename Turn>
+  void AddSideRay(const Vector& from, const Turn& turn, const SunLobe& lobe, PathRandom& random,
+                  std::vector<double>& light) const;
+  /// Goes on in a direction. @param lobe  null: no clouds.
+  void Take(const Turned& turned, const Vector& direction, const SunLobe* lobe);
   [[nodiscard]] Branch FirstBranch(const Piece& first, double factor) const;
   [[nodiscard]] Responses ResponsesToSun(const Piece& piece) const;
   [[nodiscard]] ScatteringMatrix AerosolMatrix(std::size_t band, double mie_phase,
@@ -431,6 +471,7 @@ class Tracer {
   std::vector<Branch> branches_;
   std::vector<Point> points_;
   std::optional<PathMeeting> end_;  // what the segment ends at; no value: it leaves the air
+  bool end_sees_sun_ = false;       // in the sample of the transmittance to the sun
   AirColumns end_view_;
   double end_share_ = 0.0;
   double first_shares_ = 0.0;  // sum of the shares of the first segment
@@ -645,6 +686,7 @@ void Tracer::GatherFromBody(const Piece& piece, const Vector& point, const Albed
   const double radius = glm::length(point), towards_sun = glm::dot(point, scene_.sun());
   const bool faces = to_view > 0.0 && scene_.Lit(radius, towards_sun);
   const double lit = faces ? to_view * SunTransmittance(point, random) : 0.0;
+  end_sees_sun_ = lit > 0.0;
   const AirColumns sun = lit > 0.0 ? scene_.ColumnsToSun(radius, towards_sun) : AirColumns{};
   const double expected = ExpectedLight(piece, piece.length_m);
   for (std::size_t band = 0; band < weight_.size(); ++band) {
@@ -679,12 +721,16 @@ double Tracer::SumOfShares() const {
   return sum;
 }
 
-// Returns how many times as much light as from a mean direction the aerosol scatters from the sun
-// into the segment, at least 1.
+// Returns how many times as much light as from a mean direction the aerosol, or a cloud at the end in
+// sight of the sun, scatters from the sun into the segment, at least 1.
 double Tracer::AureoleAlong(const Piece& piece) const {
   const double nu = std::clamp(glm::dot(piece.direction, scene_.sun()), -1.0, 1.0);
   const std::vector<double> phase = MiePhaseValues(scene_.medium(), nu);
-  return std::max(4.0 * kPi * *std::max_element(phase.begin(), phase.end()), 1.0);
+  double most = *std::max_element(phase.begin(), phase.end());
+  const auto* cloud = end_ ? std::get_if<PathScatterer>(&end_->body) : nullptr;
+  if (cloud != nullptr && end_sees_sun_)
+    most = std::max(most, SunLobe(*cloud->phase, scene_.sun()).Mean(piece.direction));
+  return std::max(4.0 * kPi * most, 1.0);
 }
 
 // Applies Russian roulette and splitting. Paths towards the sun have small weights, because
@@ -1000,21 +1046,41 @@ template <typename Turn>
 Piece Tracer::GoOn(const Vector& from, const Turn& turn, const PhaseFunction* lobe,
                    const std::array<double, 3>& drawn, PathRandom& random,
                    std::vector<double>& light) {
-  if (lobe != nullptr) AddSideRay(from, turn, *lobe, random, light);
-  const Vector direction = turn.Sample(drawn);
-  const Turned turned = turn.At(direction);
-  Take(turned, direction);
-  sun_share_ = 1.0;
-  if (lobe != nullptr && turned.density > 0.0) {
-    sun_share_ =
-        turned.density / (turned.density + Phase(*lobe, glm::dot(direction, scene_.sun())));
+  std::optional<SunLobe> around_sun;
+  if (lobe != nullptr) {
+    around_sun.emplace(*lobe, scene_.sun());
+    AddSideRay(from, turn, *around_sun, random, light);
+    if (random.Next() < kSidePaths) AddSidePath(from, turn, *around_sun, random);
   }
+  const Vector direction = turn.Sample(drawn);
+  Take(turn.At(direction), direction, around_sun ? &*around_sun : nullptr);
   return scene_.PieceFrom(from, direction);
 }
 
-void Tracer::Take(const Turned& turned, const Vector& direction) {
+template <typename Turn>
+void Tracer::AddSidePath(const Vector& from, const Turn& turn, const SunLobe& lobe,
+                         PathRandom& random) {
+  const Vector direction = lobe.SampleOfMean(random);
+  const Turned turned = turn.At(direction);
+  if (!(turned.density > 0.0)) return;
+  const std::vector<double> weight = weight_;
+  const std::vector<Analyser> analyser = analyser_;
+  const Vector reference = reference_;
+  Take(turned, direction, &lobe);
+  branches_.push_back(
+      {scene_.PieceFrom(from, direction), order_ + 1, weight_, analyser_, reference_, sun_share_});
+  weight_ = weight;
+  analyser_ = analyser;
+  reference_ = reference;
+}
+
+// A path, its side path and its side ray share what lies in a direction by the balance heuristic.
+void Tracer::Take(const Turned& turned, const Vector& direction, const SunLobe* lobe) {
+  const double side = lobe != nullptr ? kSidePaths * lobe->Mean(direction) : 0.0;
+  const double density = turned.density + side;
   for (std::size_t band = 0; band < weight_.size(); ++band)
-    weight_[band] *= turned.density > 0.0 ? turned.value[band] / turned.density : 0.0;
+    weight_[band] *= turned.density > 0.0 ? turned.value[band] / density : 0.0;
+  sun_share_ = lobe != nullptr && density > 0.0 ? density / (density + lobe->Peak(direction)) : 1.0;
   if (polarised_ == nullptr) return;
   if (!turned.analyser.empty()) {
     analyser_ = turned.analyser;
@@ -1027,14 +1093,11 @@ void Tracer::Take(const Turned& turned, const Vector& direction) {
   reference_ = FrameAround(direction).x;
 }
 
-// The side ray and the next segment of the path share the sun's light in clouds by the balance
-// heuristic: see renderer/cloud_light/cloud_path_tracer.h.
+// A side ray ends in the first cloud: see renderer/cloud_light/cloud_path_tracer.h.
 template <typename Turn>
-void Tracer::AddSideRay(const Vector& from, const Turn& turn, const PhaseFunction& lobe,
+void Tracer::AddSideRay(const Vector& from, const Turn& turn, const SunLobe& lobe,
                         PathRandom& random, std::vector<double>& light) const {
-  const double u = random.Next();
-  const Vector direction =
-      FrameAround(scene_.sun()).Direction(SampleCosine(lobe, u), 2.0 * kPi * random.Next());
+  const Vector direction = lobe.SampleOfPeak(random);
   const Piece side = scene_.PieceFrom(from, direction);
   const std::optional<PathMeeting> meeting = MeetingOn(side, random);
   const auto* cloud = meeting ? std::get_if<PathScatterer>(&meeting->body) : nullptr;
@@ -1045,9 +1108,9 @@ void Tracer::AddSideRay(const Vector& from, const Turn& turn, const PhaseFunctio
   const double visible = SunTransmittance(point, random);
   if (visible == 0.0) return;
   const Turned turned = turn.At(direction);
-  const double to_sun = glm::dot(direction, scene_.sun());
-  const double sent = cloud->albedo * Phase(*cloud->phase, to_sun) * visible /
-                      (turned.density + Phase(lobe, to_sun));
+  const double density = turned.density + kSidePaths * lobe.Mean(direction) + lobe.Peak(direction);
+  const double sent =
+      cloud->albedo * Phase(*cloud->phase, glm::dot(direction, scene_.sun())) * visible / density;
   const AirColumns view = scene_.ColumnsAlong(side, meeting->distance_m);
   const AirColumns sun = scene_.ColumnsToSun(radius, towards_sun);
   const std::size_t bands = weight_.size();

@@ -12,8 +12,16 @@
 // by Russian roulette.
 //
 // Clouds and mountains among the air (path_surroundings.h) end segments: a cloud where a free flight
-// through it collides. From each vertex a side ray looks for a cloud near the sun, where its phase
-// function has a peak, and shares that light with the path.
+// through it collides. Droplets scatter most light forwards, so that few paths turn near the sun,
+// where clouds are bright. With the density a(d) of the next direction d of a path, the phase function
+// b of clouds around the sun, and the mean c of b and of a wide lobe around the sun, each vertex has
+//
+//   the path                                 weight f / (a + q c)
+//   with probability q, a side path from c   weight f / (a + q c)
+//   a side ray from b to the first cloud     weight f / (a + q c + b), of that cloud's sunlight
+//
+// where f(d) is the light scattered into the path, and path and side path take the share
+// (a + q c) / (a + q c + b) of the sunlight of a cloud that they meet next (balance heuristic).
 //
 // The estimate is unbiased except for the tables of columns (1e-6, column_table.h). The shared
 // sources, the closed forms and the tables of lut/ are not used, except for the values of phase
@@ -113,9 +121,7 @@ struct PathTracedIrradiance {
                                                    const PathOptions& options = {});
 
 /// Traces paths from any point, also among clouds and mountains (path_surroundings.h). Points are
-/// metres from the planet's centre. A path that scatters or is reflected may see a cloud near the
-/// sun, where the phase function of clouds has its peak: a side ray in that lobe shares the light
-/// with the path, from each of its vertices. Light is polarised if the medium's is. Immutable; safe
+/// metres from the planet's centre. Light is polarised if the medium's is. Immutable; safe
 /// to use from many threads.
 class AirPathTracer {
  public:
