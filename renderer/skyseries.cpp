@@ -16,6 +16,7 @@
 #include "renderer/camera/track.h"
 #include "renderer/camera/track_file.h"
 #include "renderer/camera/track_names.h"
+#include "renderer/path_tracing/traceable_scene.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
@@ -137,6 +138,7 @@ SeriesPlan PlanOf(const SkyseriesOptions& options) {
     plan.scene.cloud_day = CloudDayNear(scene, plan.frames.front().instant);
   plan.selected = options.frames ? SelectFrames(plan.frames, *options.frames) : plan.frames;
   plan.settings = options.settings;
+  if (plan.settings.paths) RequireTraceable(scene);
   plan.budget = options.budget;
   return plan;
 }
@@ -175,8 +177,9 @@ RenderSettings PreviewSettings(const RenderSettings& settings, bool night_vision
 /// moon of a frame are computed once.
 class FramePictures {
  public:
-  FramePictures(const SeriesPlan& plan, bool night_vision)
+  FramePictures(const SeriesPlan& plan, bool night_vision, bool is_quiet)
       : plan_(plan),
+        is_quiet_(is_quiet),
         settings_(plan.settings),
         preview_(PreviewSettings(plan.settings, night_vision)) {}
 
@@ -219,6 +222,10 @@ class FramePictures {
                                       const CameraSample& camera_sample) const {
     if (!plan_.budget) {
       CountedPicture picture = renderer.RenderCounted(camera_sample, settings_);
+      if (picture.rays.path_error && !is_quiet_) {
+        Log(fmt::format("skyseries: {}: the mean standard error of pixels is {:.2g} %\n",
+                        FormatUtc(camera_sample.instant), 100.0 * *picture.rays.path_error));
+      }
       return {std::move(picture.image), NotesOn(picture.rays, settings_)};
     }
     ChosenPicture picture = renderer.RenderWithin(camera_sample, settings_, *plan_.budget);
@@ -230,6 +237,7 @@ class FramePictures {
   }
 
   const SeriesPlan& plan_;
+  bool is_quiet_;
   RenderSettings settings_;  // those of the plan, and the progress of a frame
   const RenderSettings preview_;
   std::unique_ptr<SceneRenderer> renderer_;
@@ -292,7 +300,7 @@ int Run(const SkyseriesOptions& options) {
   output.name = FrameName(options.out);
   const SeriesPlan plan = PlanOf(options);
   output.inputs = InputsOf(options, plan.scene);
-  FramePictures pictures(plan, output.look.night_vision);
+  FramePictures pictures(plan, output.look.night_vision, options.common.quiet);
   const SeriesSummary summary =
       RunSeries(SourceOf(plan, pictures), plan.frames, plan.selected, output);
   if (!options.common.quiet) PrintSummary(summary);

@@ -33,6 +33,10 @@ CloudLightOptions LightOptions(double planet_radius_m) {
 
 }  // namespace
 
+CloudPhases PhasesOf(const SceneCloudField& layer) {
+  return layer.is_of_ice ? IcePhases(kPhase_nm) : DropletPhases(kPhase_nm);
+}
+
 bool CloudsByTime::HasAny() const { return !scene_.clouds.empty(); }
 
 SolvedClouds CloudsByTime::Solved(double time_s, const glm::dvec3& to_light) const {
@@ -48,8 +52,7 @@ SolvedClouds CloudsByTime::Solved(double time_s, const glm::dvec3& to_light) con
   }
   solved.layers = std::make_shared<const CloudLayers>(CloudFieldsOf(scene_, time_s));
   for (const SceneCloudField& layer : *solved.layers) {
-    CloudPhases phases = layer.is_of_ice ? IcePhases(kPhase_nm) : DropletPhases(kPhase_nm);
-    solved.light.emplace_back(layer.field, CloudScatterers{std::move(phases)},
+    solved.light.emplace_back(layer.field, CloudScatterers{PhasesOf(layer)},
                               CloudSurroundings{.to_sun = beam}, LightOptions(radius_m_));
   }
   return solved;

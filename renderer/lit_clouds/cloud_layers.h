@@ -19,6 +19,9 @@ namespace alpenglow::renderer {
 /// Layers of clouds at one time, from the lowest to the highest base.
 using CloudLayers = std::vector<SceneCloudField>;
 
+/// Returns the phase functions of the droplets or crystals of a layer, the same for all bands.
+[[nodiscard]] CloudPhases PhasesOf(const SceneCloudField& layer);
+
 /// Layers under one distant light. A light below kLowestCloudLight_deg, which no cloud sees, counts as
 /// one in the zenith.
 struct SolvedClouds {

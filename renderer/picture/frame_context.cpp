@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <utility>
 
 #include "atmosphere/astronomy/moon.h"
@@ -84,6 +85,7 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
   LightMedia();
   LightClouds();
   LightTerrain();
+  if (settings_.paths) AddPaths();
   if (Has(Effect::kStars)) AddStars(observer);
   AddSmallDisks();
 }
@@ -168,6 +170,21 @@ void FrameContext::LightTerrain() {
       source.light.on_terrain = over_ground_->ground_light.OnTerrain(source.ground_sources());
   }
   slopes_s_ = watch.seconds();
+}
+
+void FrameContext::AddPaths() {
+  for (FrameLight& source : lights_) {
+    if (!source.light.shows) continue;
+    std::shared_ptr<const CloudLayers> layers;
+    std::vector<CloudPhases> phases;
+    if (source.clouds) {
+      layers = scene_->clouds().At(instant_, source.light.source.direction.seen)->layers;
+      std::ranges::transform(*layers, std::back_inserter(phases), PhasesOf);
+    }
+    source.paths = std::make_shared<const ScenePathTracer>(TracedScene{
+        over_ground_->air.medium(), scene_->ground(), geometry(), over_ground_->ground_light,
+        source.light, layers, std::move(phases), camera().PixelAngle()});
+  }
 }
 
 void FrameContext::AddStars(const Observer& observer) {

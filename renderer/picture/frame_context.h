@@ -13,6 +13,7 @@
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/lit_clouds/lit_clouds.h"
 #include "renderer/media/media_light.h"
+#include "renderer/path_tracing/scene_path_tracer.h"
 #include "renderer/picture/limb_view.h"
 #include "renderer/picture/prepared_scene.h"
 #include "renderer/picture/refracted_view_rays.h"
@@ -31,7 +32,8 @@ struct FrameLight {
   Spectrum by_sun;                                 // irradiance relative to the sun's
   std::shared_ptr<const TerrainSunlight> shadows;  // in the air
   std::shared_ptr<const MediaLight> media;         // null: no bodies, and only lamps light layers
-  std::shared_ptr<const LitClouds> clouds = nullptr;  // null: none
+  std::shared_ptr<const LitClouds> clouds = nullptr;       // null: none
+  std::shared_ptr<const ScenePathTracer> paths = nullptr;  // null: the fast method
 
   /// Returns the shadow of clouds; null: none.
   [[nodiscard]] const CloudShadow* cloud_shadow() const {
@@ -100,6 +102,8 @@ class FrameContext {
   void LightClouds();
   /// Computes the terrain's illumination by all lights.
   void LightTerrain();
+  /// Prepares the paths of all lights, if the settings have paths.
+  void AddPaths();
   void AddStars(const Observer& observer);
   void AddSmallDisks();
 

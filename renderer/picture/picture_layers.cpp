@@ -160,6 +160,13 @@ bool IsEdgeOfLamps(const HdrImage& image, const std::vector<float>& lamps, int x
 
 }  // namespace
 
+std::optional<double> PathSpread::RelativeError() const {
+  if (paths < 2 || !(sum > 0.0)) return std::nullopt;
+  const auto count = static_cast<double>(paths);
+  const double variance = std::max(squares - sum * sum / count, 0.0) / (count - 1.0);
+  return std::sqrt(variance * count) / sum;
+}
+
 void PixelSum::Add(const Shaded& ray, bool with_parts) {
   const bool is_first = rays++ == 0;
   radiance = is_first ? ray.radiance : radiance + ray.radiance;
@@ -238,6 +245,7 @@ void PixelWriter::Set(const Plane& plane, int x, int y, const LayerValues& value
 
 void PixelWriter::Write(int x, int y, const PixelSum& rays) {
   Count(static_cast<std::uint64_t>(rays.rays));
+  Count(rays.paths);
   const auto rgb = colour_.LinearSrgb(rays.MeanRadiance());
   image_.at(x, y) = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]),
                      static_cast<float>(rgb[2])};
@@ -252,6 +260,23 @@ void PixelWriter::Count(std::uint64_t rays) {
   }
   for (std::uint64_t seen = most_; rays > seen && !most_.compare_exchange_weak(seen, rays);) {
   }
+}
+
+void PixelWriter::Count(const PathSpread& paths) {
+  constexpr double kMost = 1000.0;
+  const std::optional<double> error = paths.RelativeError();
+  if (!error) return;
+  ++traced_pixels_;
+  errors_in_millionths_ += static_cast<std::uint64_t>(1e6 * std::min(*error, kMost));
+}
+
+RayCount PixelWriter::rays() const {
+  RayCount count{rays_, least_ <= most_ ? least_.load() : 0, most_};
+  if (traced_pixels_ > 0) {
+    count.path_error =
+        1e-6 * static_cast<double>(errors_in_millionths_) / static_cast<double>(traced_pixels_);
+  }
+  return count;
 }
 
 void PixelWriter::WriteMiddle(int x, int y, const Hit& hit) {

@@ -73,10 +73,26 @@ struct Shaded {
   float cloud_distance_m = 0.0F;
 };
 
+/// The luminances of the paths of a pixel.
+struct PathSpread {
+  std::uint64_t paths = 0;
+  double sum = 0.0, squares = 0.0;
+
+  void Add(double luminance) {
+    ++paths;
+    sum += luminance;
+    squares += luminance * luminance;
+  }
+  /// Returns the standard error of the mean, relative to it; no value for black pixels, and for a
+  /// single path.
+  [[nodiscard]] std::optional<double> RelativeError() const;
+};
+
 /// Sum over the rays of a pixel, which all have the same weight.
 struct PixelSum {
   Spectrum radiance;
   int rays = 0;
+  PathSpread paths = {};
   /// Sums of the other members of Shaded; null unless layers need them, since most pictures have no
   /// layers.
   std::shared_ptr<Shaded> parts = nullptr;
@@ -112,6 +128,8 @@ struct RayCount {
   std::uint64_t rays = 0;   // sum over all pixels
   std::uint64_t least = 0;  // smallest number in a pixel
   std::uint64_t most = 0;   // largest number in a pixel
+  /// Mean of the relative standard errors of luminance in pixels; empty without paths.
+  std::optional<double> path_error = std::nullopt;
 };
 
 /// Writes the means of pixels into the picture.
@@ -131,9 +149,7 @@ class PixelWriter {
 
   [[nodiscard]] HdrImage Take();
   /// Returns the ray counts of the pixels written so far.
-  [[nodiscard]] RayCount rays() const {
-    return {rays_, least_ <= most_ ? least_.load() : 0, most_};
-  }
+  [[nodiscard]] RayCount rays() const;
 
  private:
   struct Plane {
@@ -143,11 +159,14 @@ class PixelWriter {
   void Set(const Plane& plane, int x, int y, const LayerValues& values);
 
   void Count(std::uint64_t rays);
+  void Count(const PathSpread& paths);
 
   const BandColour& colour_;
   HdrImage image_;
   std::vector<Plane> planes_;
   std::atomic<std::uint64_t> rays_{0}, least_{~std::uint64_t{0}}, most_{0};
+  // Whole numbers, so that their sum does not depend on the order of the pixels.
+  std::atomic<std::uint64_t> traced_pixels_{0}, errors_in_millionths_{0};
 };
 
 /// Returns the layers that the renderer's picture must have. The layer of lamps is optional;

@@ -225,10 +225,32 @@ void PixelLight::TakeUnoccludedSky() {
   Add(seen);
 }
 
+std::optional<Spectrum> PixelLight::LightOfPaths(const CameraRay& ray) {
+  using atmosphere::reference::kPathsPerBatch;
+  constexpr std::uint64_t kSeed = 1;
+  const RenderSettings& settings = frame_->settings();
+  if (!settings.paths) return std::nullopt;
+  const int rays = settings.samples_per_pixel;
+  const auto paths = static_cast<std::uint64_t>((*settings.paths + rays - 1) / rays);
+  const auto pixel = static_cast<std::uint64_t>(y_) * 16384 + static_cast<std::uint64_t>(x_);
+  Spectrum sum(glow_.size());
+  for (std::uint64_t i = 0; i < paths; ++i) {
+    const std::uint64_t path = static_cast<std::uint64_t>(sum_.rays) * paths + i;
+    atmosphere::reference::PathRandom random(kSeed, pixel + (path / kPathsPerBatch << 32U),
+                                             path % kPathsPerBatch);
+    const Spectrum light = shader_->OnePath(ray, random);
+    sum_.paths.Add(frame_->scene().colour().Xyz(light)[1]);
+    sum = sum + light;
+  }
+  return (1.0F / static_cast<float>(paths)) * sum;
+}
+
 void PixelLight::Add(const Ray& seen) {
   const LampTile& near = frame_->plan().tiles.empty() ? DarkTile() : frame_->plan().At(x_, y_);
-  const Shaded shaded = shader_->Shade(seen.hit, airs_[seen.air], seen.ray, near,
-                                       samples_.Point(sum_.rays, SampleOf::kSunDisk));
+  const std::optional<Spectrum> traced = LightOfPaths(seen.ray);
+  const Shaded shaded =
+      shader_->Shade(seen.hit, airs_[seen.air], seen.ray, near,
+                     samples_.Point(sum_.rays, SampleOf::kSunDisk), traced ? &*traced : nullptr);
   spread_.Add(frame_->scene().colour().LinearSrgb(shaded.radiance));
   const Spectrum glow = shaded.lamps + shaded.volumes + shaded.clouds;
   const bool sees_sky = seen.hit.kind == HitKind::kSky && !airs_[seen.air].is_alone;

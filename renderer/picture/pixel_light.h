@@ -111,6 +111,8 @@ class PixelLight {
     glm::dvec2 offset;  // from the middle of the pixel
   };
   [[nodiscard]] Ray Traced(int sample);
+  /// Returns the mean light of the paths of the next ray; no value if the picture has none.
+  [[nodiscard]] std::optional<Spectrum> LightOfPaths(const CameraRay& ray);
   void AddNewAir(std::size_t known);
   void Add(const Ray& seen);
 

@@ -89,8 +89,9 @@ PolarisedLight PixelShader::PolarisedGround(const Hit& hit, const CameraRay& ray
 }
 
 Shaded PixelShader::Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
-                          const LampTile& near, std::array<double, 2> disk_sample) const {
-  Shaded shaded = WithoutPolariser(hit, through, ray, near, disk_sample);
+                          const LampTile& near, std::array<double, 2> disk_sample,
+                          const Spectrum* traced) const {
+  Shaded shaded = WithoutPolariser(hit, through, ray, near, disk_sample, traced);
   if (!frame_->IsPolarised()) return shaded;
   const PolarisedLight inscatter =
       (through.layers_left * frame_->light().source.irradiance) * *through.air.polarised;
@@ -103,7 +104,8 @@ Shaded PixelShader::Shade(const Hit& hit, const SharedSegmentAir& through, const
 
 Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
                                      const CameraRay& ray, const LampTile& near,
-                                     std::array<double, 2> disk_sample) const {
+                                     std::array<double, 2> disk_sample,
+                                     const Spectrum* traced) const {
   const FrameContext& frame = *frame_;
   const NightLight* night = frame.sky_lights().night.get();
   Shaded shaded;
@@ -127,7 +129,9 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   shaded.clouds = through.layers_left * through.cloud_light;
   shaded.cloud_transmittance = through.clouds.transmittance();
   shaded.cloud_distance_m = through.clouds.WeightedDistance_m();
-  shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes + shaded.clouds;
+  shaded.radiance = traced != nullptr
+                        ? *traced
+                        : shaded.inscatter + shaded.lamps + shaded.volumes + shaded.clouds;
   if (hit.kind == HitKind::kSky) {
     const Spectrum disk_left = through.clouds.DiskLeft() * through.layers_left;
     if (!frame.sky_lights().small_sun)
@@ -139,13 +143,26 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
     if (night)
       shaded.radiance = shaded.radiance + shaded.transmittance * night->Above(ray.direction);
   } else {
-    AddGround(hit, ray, near, disk_sample, shaded);
+    AddGround(hit, ray, near, disk_sample, traced == nullptr, shaded);
   }
   return shaded;
 }
 
+Spectrum PixelShader::OnePath(const CameraRay& ray,
+                              atmosphere::reference::PathRandom& random) const {
+  Spectrum light(frame_->scene().medium().wavelengths_nm.size());
+  for (const FrameLight& source : frame_->lights()) {
+    if (!source.paths) continue;
+    const SpectrumOf<double> path = source.paths->OnePath(ray.origin, ray.direction, random);
+    for (std::size_t band = 0; band < light.size(); ++band)
+      light[band] += static_cast<float>(path[band]) * source.light.source.irradiance[band];
+  }
+  return light;
+}
+
 void PixelShader::AddGround(const Hit& hit, const CameraRay& ray, const LampTile& near,
-                            std::array<double, 2> disk_sample, Shaded& shaded) const {
+                            std::array<double, 2> disk_sample, bool has_natural,
+                            Shaded& shaded) const {
   const GroundLight& ground_light = frame_->over_ground().ground_light;
   const SeenGround seen = ground_light.SeenFrom(hit, -ray.direction, frame_->light());
   shaded.albedo = seen.albedo;
@@ -154,7 +171,7 @@ void PixelShader::AddGround(const Hit& hit, const CameraRay& ray, const LampTile
     if (!source.light.shows) continue;
     const NaturalRadiance sent = ground_light.Natural(seen, source.ground_sources(), disk_sample);
     if (&source == &frame_->lights().front()) shaded.sun_visibility = sent.disk_visibility;
-    natural = natural + sent.radiance;
+    if (has_natural) natural = natural + sent.radiance;
   }
   if (const NightLight* night = frame_->sky_lights().night.get()) {
     const double cos_up = glm::dot(hit.normal, seen.up);

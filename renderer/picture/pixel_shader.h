@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
+#include "atmosphere/reference/path_sampling.h"
 #include "lut/multiple_scattering/polarised_scattering.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/lamps/lamp_light.h"
@@ -26,8 +27,14 @@ class PixelShader {
   [[nodiscard]] Hit Trace(const CameraRay& ray, double expected_m = 0.0) const;
   /// Returns the light that arrives along a ray.
   /// @param near  lamps that can light the pixel. @param disk_sample  see GroundLight::Natural.
+  /// @param traced  light of OnePath(), which replaces that of air, clouds and ground; null: the fast
+  ///     method.
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
-                             const LampTile& near, std::array<double, 2> disk_sample) const;
+                             const LampTile& near, std::array<double, 2> disk_sample,
+                             const Spectrum* traced = nullptr) const;
+  /// Returns the light of one path of sun and one of the moon, W m^-2 sr^-1 nm^-1.
+  [[nodiscard]] Spectrum OnePath(const CameraRay& ray,
+                                 atmosphere::reference::PathRandom& random) const;
   /// Returns the fraction of light from space that air, media and a polariser let through at a place
   /// of the picture; no value where ground is in front.
   [[nodiscard]] std::optional<Spectrum> LeftOfSpace(double x, double y) const;
@@ -45,10 +52,12 @@ class PixelShader {
   /// Computes Shade() without a polariser and without Shaded::polarised.
   [[nodiscard]] Shaded WithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
                                         const CameraRay& ray, const LampTile& near,
-                                        std::array<double, 2> disk_sample) const;
+                                        std::array<double, 2> disk_sample,
+                                        const Spectrum* traced) const;
   /// Adds the light that the ground sends towards the eye.
+  /// @param has_natural  whether it includes that of sun and moon.
   void AddGround(const Hit& hit, const CameraRay& ray, const LampTile& near,
-                 std::array<double, 2> disk_sample, Shaded& shaded) const;
+                 std::array<double, 2> disk_sample, bool has_natural, Shaded& shaded) const;
   /// Returns Q and U of the distant lights that the ground sends towards the eye.
   [[nodiscard]] PolarisedLight PolarisedGround(const Hit& hit, const CameraRay& ray,
                                                std::array<double, 2> disk_sample) const;

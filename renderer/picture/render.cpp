@@ -15,6 +15,7 @@
 #include "lut/cli/program.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effects/effect_choice.h"
+#include "renderer/path_tracing/traceable_scene.h"
 #include "renderer/picture/frame_context.h"
 #include "renderer/picture/pixel_light.h"
 #include "renderer/picture/pixel_shader.h"
@@ -307,6 +308,12 @@ void ValidateSettings(const RenderSettings& settings) {
                    "samples per pixel, with noise,");
   }
   RequireInRange(settings.air_nodes, 2, 32, "air nodes");
+  if (!settings.paths) return;
+  RequireInRange(*settings.paths, 1, kMostPaths, "paths per pixel");
+  if (settings.noise)
+    throw InputError("paths need a fixed number of rays per pixel, without noise");
+  if (std::ranges::any_of(settings.layers, IsOfPolarisation))
+    throw InputError("paths have no layers of polarised light");
 }
 
 SceneRenderer::SceneRenderer(const Scene& scene, Progress* progress)
@@ -341,6 +348,7 @@ HdrImage SceneRenderer::Render(const CameraSample& camera_sample,
 CountedPicture SceneRenderer::RenderCounted(const CameraSample& camera_sample,
                                             const RenderSettings& settings) const {
   ValidateSettings(settings);
+  if (settings.paths) RequireTraceable(scene_->scene());
   const PreparedScene& scene = PatternedScene(*scene_, camera_sample);
   return TileRenderer({scene.For(settings.effects), camera_sample, settings}).Picture();
 }
@@ -349,6 +357,7 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
                                           const RenderSettings& settings,
                                           const EffectBudget& budget) const {
   ValidateSettings(settings);
+  if (settings.paths) throw InputError("paths trace all effects, and leave no choice of effects");
   const PreparedScene& patterned = PatternedScene(*scene_, camera_sample);
   const FrameContext frame(patterned.For(settings.effects), camera_sample, settings);
   std::optional<FrameContext> on_few_bands;

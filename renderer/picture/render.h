@@ -44,6 +44,9 @@ inline constexpr int kMostRaysForNoise = 256;
 /// Number of first rays of a pixel whose neighbours agree.
 inline constexpr int kFewestRaysForNoise = 2;
 
+/// Largest number of paths of a pixel.
+inline constexpr int kMostPaths = 1 << 20;
+
 struct RenderSettings {
   int width = 1280;
   int height = 720;
@@ -52,6 +55,12 @@ struct RenderSettings {
   /// (shared_samples.h), at most kMostRaysForNoise. Empty: all pixels take samples_per_pixel.
   std::optional<double> noise = std::nullopt;
   PixelFilter::Kind filter = PixelFilter::Kind::kBlackmanHarris;
+  /// Number of paths of a pixel, in [1, 1048576]: the light of sun, moon and sky in air, clouds and on
+  /// the ground is traced (path_tracing/scene_path_tracer.h). All rays have the same number of them,
+  /// rounded up.
+  /// Excludes `noise` and layers of polarised light; effects of air, clouds and ground change nothing.
+  /// Empty: the fast method.
+  std::optional<int> paths = std::nullopt;
   int air_nodes = 12;  // Gauss nodes along a ray to the sky
   EffectSet effects = EffectSet::All();
   bool share_air = true;  // between the rays of a pixel; false for comparison
@@ -130,7 +139,7 @@ class SceneRenderer {
   [[nodiscard]] CountedPicture RenderCounted(const CameraSample& camera_sample,
                                              const RenderSettings& settings) const;
 
-  /// Renders with the subset of settings.effects that the picture needs (effect_choice.h). The
+  /// Renders without paths, with the subset of settings.effects that the picture needs (effect_choice.h). The
   /// choice does not depend on the number of threads; the times in it are measured in this run.
   [[nodiscard]] ChosenPicture RenderWithin(const CameraSample& camera_sample,
                                            const RenderSettings& settings,

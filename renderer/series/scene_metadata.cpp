@@ -330,6 +330,7 @@ Metadata PictureMetadata(const Scene& scene, const FileHashes& hashes,
   metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);
   metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
   if (settings.noise) metadata["alpenglow.noise"] = fmt::format("{}", *settings.noise);
+  if (settings.paths) metadata["alpenglow.paths"] = fmt::format("{}", *settings.paths);
   metadata["alpenglow.filter"] = NameOf(settings.filter);
   metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
   metadata["alpenglow.effects"] = NameOf(settings.effects);
@@ -341,9 +342,11 @@ Metadata PictureMetadata(const Scene& scene, const FileHashes& hashes,
 
 Metadata NotesOn(const RayCount& rays, const RenderSettings& settings) {
   const double pixels = static_cast<double>(settings.width) * settings.height;
-  return {{"alpenglow.note.rays",
-           fmt::format("{:.3f} a pixel, {} to {}", static_cast<double>(rays.rays) / pixels,
-                       rays.least, rays.most)}};
+  Metadata notes{{"alpenglow.note.rays",
+                  fmt::format("{:.3f} a pixel, {} to {}", static_cast<double>(rays.rays) / pixels,
+                              rays.least, rays.most)}};
+  if (rays.path_error) notes["alpenglow.note.path_error"] = fmt::format("{:.4f}", *rays.path_error);
+  return notes;
 }
 
 std::string Fingerprint(const Metadata& metadata) {

@@ -323,6 +323,31 @@ TEST_F(Skyseries, CloudsOfTheOptionReplaceThoseOfTheScene) {
   EXPECT_EQ(Run("--list --at noon --clouds 'cumulus 0.3, cirrus 0.5'").status, 0);
 }
 
+TEST_F(Skyseries, TracedPicturesAreKeptApartFromOthers) {
+  const std::string still = SmallStill() + " --resume";
+  ASSERT_EQ(Run(still).status, 0);
+  const Outcome traced = Run(still + " --paths 2");
+  ASSERT_EQ(traced.status, 0) << traced.error;
+  EXPECT_THAT(traced.error, HasSubstr("1 rendered"));
+  EXPECT_THAT(traced.error, HasSubstr("the mean standard error of pixels is"));
+  EXPECT_EQ(Header().at("alpenglow.paths"), "2");
+  EXPECT_EQ(Header().count("alpenglow.note.path_error"), 1U);
+  EXPECT_THAT(Run(still + " --paths 2").error, HasSubstr("1 kept"));
+  EXPECT_THAT(Run(still + " --paths 3").error, HasSubstr("1 rendered"));
+  EXPECT_THAT(Run(still).error, HasSubstr("1 rendered"));
+}
+
+TEST_F(Skyseries, ScenesThatPathsDoNotTraceAreRefused) {
+  WriteText(folder_ / "fog.toml",
+            std::string(kBareSceneText) + "[fog]\nvisibility_m = 500\nscale_height_m = 100\n");
+  const std::string still = " --size 16x9 --out " + InFolder("still.exr");
+  ExpectFault(InFolder("fog.toml") + still + " --paths 2", 3, "--paths does not trace fog (fog)");
+  EXPECT_FALSE(fs::exists(folder_ / "still.exr"));
+  ExpectFault(InFolder("s.toml") + still + " --paths 2 --noise 1%", 2, "--noise");
+  ExpectFault(InFolder("s.toml") + still + " --paths 2 --effects auto", 2, "--effects");
+  ExpectFault(InFolder("s.toml") + still + " --paths 2 --aov stokes_q", 2, "polarised");
+}
+
 TEST_F(Skyseries, AnOptionOfAnotherCommandNamesThatCommand) {
   ExpectFault("times --latitude 3 --longitude 4 --samples 4", 2,
               "--samples is an option of skyseries, not of this command");
