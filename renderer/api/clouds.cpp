@@ -418,7 +418,7 @@ CloudRadiance CloudLight::Radiance(const CloudRay& ray) const {
   const renderer::CloudRayLight light = state_->light.Radiance(checked, to_ground_m);
   const renderer::CloudGroundIrradiance& irradiance = state_->light.ground_irradiance();
   const double direct =
-      state_->light.sun_map().to_sun().z * state_->light.SunTransmittance(checked.At(to_ground_m));
+      state_->light.sun().to_sun().z * state_->light.SunTransmittance(checked.At(to_ground_m));
   const double reflected = light.scaled_transmittance * around.ground_albedo / kPi;
   return {light.sun + reflected * (direct + irradiance.diffuse),
           light.sky + reflected * irradiance.sky,
