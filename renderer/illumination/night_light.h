@@ -40,6 +40,7 @@
 #include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
+#include "renderer/layer.h"
 
 namespace alpenglow::renderer {
 

@@ -13,7 +13,7 @@ double SlabField::DownwardFlux() const { return kPi * (mean + 2.0 / 3.0 * slope)
 double SlabField::UpwardFlux() const { return kPi * (mean - 2.0 / 3.0 * slope); }
 
 // A lobe that scatters backwards has no forward peak, although its second coefficient is positive.
-double ForwardPeak(const SlabScattering& scattering) {
+double PeakFraction(const SlabScattering& scattering) {
   return std::clamp(scattering.chi_1, 0.0, std::max(scattering.chi_2, 0.0));
 }
 
@@ -26,7 +26,7 @@ EddingtonSlab::EddingtonSlab(const SlabScattering& scattering, double depth, dou
   // millionth separates them, and removes a millionth of the light per unit of depth.
   constexpr double kMostAlbedo = 1.0 - 1e-6;
   const double w_true = std::min(scattering.albedo, kMostAlbedo);
-  const double f = ForwardPeak(scattering);
+  const double f = PeakFraction(scattering);
   scale_ = 1.0 - w_true * f;
   const double w = w_true * (1.0 - f) / scale_;
   // Eddington's phase function 1 + 3 g mu sends more light back than arrives if g is below -2/3 and

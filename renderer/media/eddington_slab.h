@@ -30,7 +30,7 @@ struct SlabScattering {
 };
 
 /// Returns the fraction of the scattered light that is in the forward peak.
-[[nodiscard]] double ForwardPeak(const SlabScattering& scattering);
+[[nodiscard]] double PeakFraction(const SlabScattering& scattering);
 
 /// The diffuse field at a depth.
 struct SlabField {

@@ -46,7 +46,7 @@ LayerLight::LayerLight(const ExponentialLayer& layer, const MultipleScattering& 
       sky_(diffuse, {0.0, 0.0, 1.0}, light.for_air, AltitudesOver(layer)),
       ground_(diffuse.bands()) {
   const double albedo = layer.optics().scattering_per_m[0] / extinction_per_m_;
-  peak_scale_ = 1.0 - albedo * ForwardPeak({albedo, chi_[1], chi_[2]});
+  peak_scale_ = 1.0 - albedo * PeakFraction({albedo, chi_[1], chi_[2]});
   broad_.kind = PhaseKind::kHenyeyGreenstein;
   broad_.g = std::clamp(chi_[1], -0.99, 0.99);
   const Spectrum sky = diffuse.SkyIrradiance(std::max(layer.bottom_m(), 0.0), sky_.mu_s());
