@@ -56,7 +56,10 @@ std::vector<FactorRay> TracedRays(const CloudField& field, const CloudGather& ga
   tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t i) {
     FactorRandom random(options.seed, i / atmosphere::reference::kPathsPerBatch,
                         i % atmosphere::reference::kPathsPerBatch);
-    const CloudRay ray = RandomRay(field, random);
+    const std::optional<CloudRay> begun =
+        tracer.AfterCollisions(RandomRay(field, random), options.collisions, random);
+    if (!begun) return;
+    const CloudRay& ray = *begun;
     FactorRay made{gather.Along(ray, kInfinite_m)};
     if (made.parts.transmittance > std::exp(-kLeastDepth)) return;
     for (int path = 0; path < options.paths_per_ray; ++path) {

@@ -4,14 +4,16 @@
 // Coarse cells lose light of the second and third order close under sunlit surfaces and have too
 // much of it deeper inside. Both depend mainly on the optical depth tau_s to the sun. A factor
 // k(tau_s), linear between six nodes in log(1 + tau_s), is fitted by least squares to paths of the
-// exact method along random rays that enter through the top and the base. The square of a ray's error
-// counts relative to its radiance, at least a tenth of the mean, as for counted photons. Relative to
-// the square of the radiance, dark rays would outweigh bright ones and leave them 0.5 to 1.5 % too
-// dark in cumulus. Factors of neighbouring nodes are expected to differ by 0.3, so that noise of the
-// paths does not make them alternate. The fit holds for one field and one sun.
+// exact method along random rays that enter through the top and the base, or that paths from there
+// take after some collisions. The square of a ray's error counts relative to its radiance, at least a
+// tenth of the mean, as for counted photons. Relative to the square of the radiance, dark rays would
+// outweigh bright ones and leave them 0.5 to 1.5 % too dark in cumulus. Factors of neighbouring nodes
+// are expected to differ by 0.3, so that noise of the paths does not make them alternate. The fit
+// holds for one field and one sun.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -24,6 +26,7 @@ struct CloudFactorOptions {
   std::size_t rays = 20000;  // in [0, 10^7]; 0: the factor is 1 everywhere
   int paths_per_ray = 2;     // in [1, 1000]
   std::uint64_t seed = 1;
+  int collisions = 0;  // of paths from outside, after which rays begin; >= 0
 };
 
 /// A value at each of the hats of CloudHatsAt().
@@ -35,6 +38,12 @@ struct CloudFactor {
     double sum = parts.first;
     for (std::size_t i = 0; i < node.size(); ++i) sum += node[i] * parts.higher[i];
     return sum;
+  }
+
+  /// Returns the factor at an optical depth to the sun.
+  [[nodiscard]] double At(double depth_to_sun) const {
+    const CloudHats hats = CloudHatsAt(depth_to_sun);
+    return std::lerp(node[hats.node], node[hats.node + 1], hats.share);
   }
 
   bool operator==(const CloudFactor&) const = default;

@@ -2,13 +2,21 @@
 #include "renderer/cloud_light/cloud_light.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <mutex>
 #include <optional>
 #include <utility>
 
+#include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 
 namespace alpenglow::renderer {
 namespace {
+
+constexpr EnumNames kCloudLightMethods{{std::pair{CloudLightMethod::kFast, "fast"},
+                                        {CloudLightMethod::kHybrid, "hybrid"},
+                                        {CloudLightMethod::kTraced, "traced"}}};
 
 /// Throws InputError of the path tracer.
 const CloudSurroundings& CheckedSurroundings(const CloudField& field,
@@ -18,7 +26,45 @@ const CloudSurroundings& CheckedSurroundings(const CloudField& field,
   return surroundings;
 }
 
+/// Scattered light of a ray over black ground.
+struct ScatteredByPart {
+  double sun, sky, ground;
+};
+
+/// Returns traced light without that of sky or ground behind the clouds which their forward peak
+/// turns a little: the scaled transmittance has it.
+ScatteredByPart BesidePeak(const CloudScattered& traced, const CloudRay& ray,
+                           double scaled_transmittance) {
+  const double turned = std::max(scaled_transmittance - traced.transmittance, 0.0);
+  ScatteredByPart light{traced.sun.value, traced.sky.value, traced.ground.value};
+  double& behind = ray.direction.z >= 0.0 ? light.sky : light.ground;
+  double& before = ray.direction.z >= 0.0 ? light.ground : light.sky;
+  behind -= turned;
+  // Noise of few paths must not make light negative; the sum of both parts is kept.
+  before = std::max(before + std::min(behind, 0.0), 0.0);
+  behind = std::max(behind, 0.0);
+  return light;
+}
+
+/// Returns a seed that differs between rays.
+std::uint64_t SeedOf(const CloudRay& ray, double length_m) {
+  Fnv1a hash;
+  for (const double value : {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x,
+                             ray.direction.y, ray.direction.z, length_m}) {
+    hash.Add(value);
+  }
+  return hash.hash();
+}
+
 }  // namespace
+
+std::vector<std::string> CloudLightMethodNames() { return kCloudLightMethods.All(); }
+
+CloudLightMethod CloudLightMethodFromName(std::string_view name) {
+  return kCloudLightMethods.Named(name, "method of light in clouds \"{}\" is not one of {}");
+}
+
+std::string NameOf(CloudLightMethod method) { return kCloudLightMethods.Of(method); }
 
 /// The parts that all suns share.
 struct CloudLight::FieldLight {
@@ -56,12 +102,7 @@ struct CloudLight::SunLight {
         moments(light.solver.Sun(depths)),
         gather(*light.field, *light.optics, depths, moments.moments, light.sky.moments,
                light.ground ? &light.ground->moments : nullptr, light.options.gather) {
-    if (light.options.factor.rays > 0) {
-      const CloudPathTracer tracer(*light.field, light.scatterers,
-                                   {.to_sun = to_sun, .low_sun = depths.low_sun()},
-                                   light.options.gather.uses_detail);
-      factor = FitCloudFactor(*light.field, gather, tracer, light.options.factor);
-    }
+    factor = FactorAfter(light, 0);
     const bool is_periodic = light.field->lattice().is_periodic;
     const double repeated = 1.0 / (1.0 - light.ground_albedo * light.ReturnedToGround());
     irradiance.direct = std::max(to_sun.z, 0.0) * (is_periodic ? depths.MeanTransmittance() : 1.0);
@@ -73,37 +114,79 @@ struct CloudLight::SunLight {
   SunLight(const SunLight&) = delete;
   SunLight& operator=(const SunLight&) = delete;
 
+  /// Returns the factor for rays that begin after some collisions.
+  [[nodiscard]] CloudFactor FactorAfter(const FieldLight& light, int collisions) const {
+    CloudFactorOptions options = light.options.factor;
+    if (options.rays == 0) return {};
+    options.collisions = collisions;
+    const CloudPathTracer tracer(*light.field, light.scatterers,
+                                 {.to_sun = depths.to_sun(), .low_sun = depths.low_sun()},
+                                 light.options.gather.uses_detail);
+    return FitCloudFactor(*light.field, gather, tracer, options);
+  }
+  /// Returns the factor for the hybrid method, which is fitted on first use.
+  [[nodiscard]] const CloudFactor& HybridFactor(const FieldLight& light) const {
+    std::call_once(hybrid_asked, [&] {
+      hybrid_factor = FactorAfter(light, light.options.paths.collisions.value_or(0));
+    });
+    return hybrid_factor;
+  }
+
   CloudSunDepths depths;
   SolvedCloudMoments moments;
   CloudGather gather;  // refers to depths and moments
   CloudFactor factor;
   CloudGroundIrradiance irradiance;
+  mutable std::once_flag hybrid_asked;
+  mutable CloudFactor hybrid_factor;
 };
 
 CloudLight::CloudLight(const CloudField& field, const CloudScatterers& scatterers,
                        const CloudSurroundings& surroundings, const CloudLightOptions& options)
-    : CloudLight(
-          std::make_shared<const FieldLight>(
-              field, scatterers, CheckedSurroundings(field, scatterers, surroundings), options),
-          surroundings.to_sun) {}
+    : field_light_(std::make_shared<const FieldLight>(
+          field, scatterers, CheckedSurroundings(field, scatterers, surroundings), options)),
+      sun_light_(std::make_shared<const SunLight>(*field_light_, surroundings.to_sun)) {
+  *this = WithMethod(options.method);
+}
 
-CloudLight::CloudLight(std::shared_ptr<const FieldLight> field_light, const glm::dvec3& to_sun)
-    : field_light_(std::move(field_light)),
-      sun_light_(std::make_shared<const SunLight>(*field_light_, to_sun)) {}
+CloudLight CloudLight::WithSun(const glm::dvec3& to_sun) const {
+  CloudLight moved = *this;
+  moved.sun_light_ = std::make_shared<const SunLight>(*field_light_, to_sun);
+  return moved.WithMethod(method_);
+}
 
-CloudLight CloudLight::WithSun(const glm::dvec3& to_sun) const { return {field_light_, to_sun}; }
+CloudLight CloudLight::WithMethod(CloudLightMethod method) const {
+  const FieldLight& light = *field_light_;
+  CloudHybridOptions paths = light.options.paths;
+  if (method == CloudLightMethod::kTraced) paths.collisions.reset();
+  CloudLight same = *this;
+  same.method_ = method;
+  const bool is_hybrid = method == CloudLightMethod::kHybrid;
+  // Options out of range are refused for every method.
+  same.paths_ = std::make_shared<const CloudHybrid>(
+      *light.field, light.scatterers,
+      SolvedCloudLight{*light.optics, sun_light_->depths, sun_light_->moments.moments,
+                       light.sky.moments, light.ground ? &light.ground->moments : nullptr,
+                       is_hybrid ? sun_light_->HybridFactor(light) : CloudFactor{}},
+      paths, light.options.gather.uses_detail);
+  return same;
+}
 
 CloudRayLight CloudLight::Radiance(const CloudRay& ray, double length_m) const {
   const CloudRayParts parts = sun_light_->gather.Along(ray, length_m);
+  ScatteredByPart light{sun_light_->factor.Sun(parts), parts.sky, parts.ground};
+  if (method_ != CloudLightMethod::kFast && parts.transmittance < 1.0) {
+    light = BesidePeak(paths_->Radiance(ray, length_m, SeedOf(ray, length_m)), ray,
+                       parts.scaled_transmittance);
+  }
   const CloudGroundIrradiance& irradiance = sun_light_->irradiance;
-  const double reflected = parts.ground * field_light_->ground_albedo / kPi;
-  return {
-      .sun = sun_light_->factor.Sun(parts) + reflected * (irradiance.direct + irradiance.diffuse),
-      .sky = parts.sky + reflected * irradiance.sky,
-      .ground = parts.ground + reflected * irradiance.ground,
-      .transmittance = parts.transmittance,
-      .scaled_transmittance = parts.scaled_transmittance,
-      .mean_distance_m = parts.mean_distance_m};
+  const double reflected = light.ground * field_light_->ground_albedo / kPi;
+  return {.sun = light.sun + reflected * (irradiance.direct + irradiance.diffuse),
+          .sky = light.sky + reflected * irradiance.sky,
+          .ground = light.ground + reflected * irradiance.ground,
+          .transmittance = parts.transmittance,
+          .scaled_transmittance = parts.scaled_transmittance,
+          .mean_distance_m = parts.mean_distance_m};
 }
 
 const CloudGroundIrradiance& CloudLight::ground_irradiance() const {

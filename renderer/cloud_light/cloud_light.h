@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The fast method for light in a field of clouds: what a picture needs along a ray.
+// Light in a field of clouds: what a picture needs along a ray, by the fast method, the hybrid one
+// (cloud_hybrid.h) or paths alone.
 //
 // Scattered light has three sources, which are kept apart, because a picture gives each its own
 // colour: the sun, a uniform sky above and a uniform ground below. The radiance along a ray is
@@ -11,7 +12,7 @@
 // has the light that droplets turn by a few degrees. For droplets that absorb nothing uniform light
 // from all sides is an equilibrium, so that the part of the ground is that of the rest.
 //
-// Light of first collisions and of the forward peak is in closed form, with the extinction of voxels
+// In the fast method light of first collisions and of the forward peak is in closed form, with the extinction of voxels
 // (cloud_gather.h). Light of higher orders comes from moments on cells of 80 m (cloud_moments.h),
 // times a factor that is fitted to traced paths (cloud_factor.h).
 #pragma once
@@ -20,9 +21,13 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "renderer/cloud_light/cloud_factor.h"
 #include "renderer/cloud_light/cloud_gather.h"
+#include "renderer/cloud_light/cloud_hybrid.h"
 #include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/cloud_light/cloud_moments.h"
 #include "renderer/cloud_light/cloud_optics.h"
@@ -31,12 +36,24 @@
 
 namespace alpenglow::renderer {
 
+/// How light of sun, sky and ground is found along a ray: by the moments alone, by paths that end in
+/// them, or by paths alone. Paths have noise, which the mean over the rays of a pixel reduces. The
+/// hybrid method fits a factor of its own, for light that paths see after their collisions.
+enum class CloudLightMethod { kFast, kHybrid, kTraced };
+
+[[nodiscard]] std::vector<std::string> CloudLightMethodNames();
+/// Throws InputError for other names.
+[[nodiscard]] CloudLightMethod CloudLightMethodFromName(std::string_view name);
+[[nodiscard]] std::string NameOf(CloudLightMethod method);
+
 struct CloudLightOptions {
   CloudMomentOptions moments = {};
   CloudSunMapOptions sun_map = {};
   CloudLowSunOptions low_sun = {};
   CloudFactorOptions factor = {};
   CloudGatherOptions gather = {};
+  CloudLightMethod method = CloudLightMethod::kFast;
+  CloudHybridOptions paths = {};  // of kHybrid; kTraced takes only their number
 };
 
 /// Light that clouds scatter into a ray, and what they leave of the light behind it.
@@ -72,8 +89,12 @@ class CloudLight {
   /// Returns the light of the same field under another sun. It shares the light of sky and ground.
   [[nodiscard]] CloudLight WithSun(const glm::dvec3& to_sun) const;
 
+  /// Returns the light of the same solution by another method. It shares all tables.
+  [[nodiscard]] CloudLight WithMethod(CloudLightMethod method) const;
+
   /// Returns the light along a ray. The ground below reflects its mean irradiance; the ground and
-  /// the sky behind the clouds are not included.
+  /// the sky behind the clouds are not included. Transmittances and the distance are those of the
+  /// fast method. Random numbers depend on the ray alone, so that the same ray has the same light.
   /// @param length_m  of the ray, >= 0; may be infinite.
   [[nodiscard]] CloudRayLight Radiance(
       const CloudRay& ray, double length_m = std::numeric_limits<double>::infinity()) const;
@@ -101,10 +122,11 @@ class CloudLight {
  private:
   struct FieldLight;
   struct SunLight;
-  CloudLight(std::shared_ptr<const FieldLight> field_light, const glm::dvec3& to_sun);
 
   std::shared_ptr<const FieldLight> field_light_;
   std::shared_ptr<const SunLight> sun_light_;
+  CloudLightMethod method_ = CloudLightMethod::kFast;
+  std::shared_ptr<const CloudHybrid> paths_;  // refers to both solutions
 };
 
 }  // namespace alpenglow::renderer

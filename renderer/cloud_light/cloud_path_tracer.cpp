@@ -28,21 +28,6 @@ constexpr double kLeastWeight = 0.25;
 constexpr std::size_t kFluxGroups = 32, kWave = 8;
 constexpr std::size_t kMostColumns = std::size_t{1} << 18U;
 
-/// Returns the direction at an angle from an axis.
-glm::dvec3 TurnedFrom(const glm::dvec3& axis, double cosine, double azimuth_rad) {
-  const glm::dvec3 other = std::abs(axis.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-  const glm::dvec3 side = glm::normalize(glm::cross(axis, other));
-  const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
-  return glm::normalize(cosine * axis + sine * (std::cos(azimuth_rad) * side +
-                                                std::sin(azimuth_rad) * glm::cross(axis, side)));
-}
-
-glm::dvec3 ScatteredFrom(const glm::dvec3& direction, const PhaseFunction& phase,
-                         PathRandom& random) {
-  const double cosine = SampleCosine(phase, random.Next());
-  return TurnedFrom(direction, cosine, 2.0 * kPi * random.Next());
-}
-
 /// Returns a direction with density cos / pi around the vertical; `up` is 1 or -1.
 glm::dvec3 LambertianDirection(double up, PathRandom& random) {
   const double cosine = std::sqrt(1.0 - random.Next());
@@ -162,6 +147,31 @@ void CloudPathTracer::Reflect(Walker& walker, PathRandom& random) const {
 CloudPathLight CloudPathTracer::OnePath(const CloudRay& ray, PathRandom& random,
                                         int max_order) const {
   Walker walker{ray};
+  Follow(walker, random, max_order);
+  return walker.light;
+}
+
+CloudPathLight CloudPathTracer::CollidedPath(const CloudRay& ray, PathRandom& random) const {
+  constexpr int kAllOrders = std::numeric_limits<int>::max();
+  Walker walker{ray};
+  Collide(walker, random, kAllOrders);
+  walker.weight = WeightAfterRoulette(walker.weight, random);
+  Follow(walker, random, kAllOrders);
+  return walker.light;
+}
+
+std::optional<CloudRay> CloudPathTracer::AfterCollisions(CloudRay ray, int collisions,
+                                                         PathRandom& random) const {
+  for (int i = 0; i < collisions; ++i) {
+    const std::optional<double> distance_m = tracker_.Collision(ray, kUnbounded_m, random);
+    if (!distance_m) return std::nullopt;
+    ray.origin = ray.At(*distance_m);
+    ray.direction = ScatteredFrom(ray.direction, PhaseAt(ray.origin, random), random);
+  }
+  return ray;
+}
+
+void CloudPathTracer::Follow(Walker& walker, PathRandom& random, int max_order) const {
   while (walker.weight > 0.0 && walker.order < max_order) {
     const double ground_m = GroundDistance_m(walker.ray);
     const std::optional<double> distance_m = tracker_.Collision(walker.ray, ground_m, random);
@@ -177,7 +187,6 @@ CloudPathLight CloudPathTracer::OnePath(const CloudRay& ray, PathRandom& random,
     }
     walker.weight = WeightAfterRoulette(walker.weight, random);
   }
-  return walker.light;
 }
 
 CloudRadiance CloudPathTracer::Radiance(const CloudRay& ray,

@@ -135,6 +135,14 @@ class CloudPathTracer {
   [[nodiscard]] CloudPathLight OnePath(const CloudRay& ray, PathRandom& random,
                                        int max_order = std::numeric_limits<int>::max()) const;
 
+  /// Returns the light along one path that collides at the origin of a ray, on which it arrives.
+  [[nodiscard]] CloudPathLight CollidedPath(const CloudRay& ray, PathRandom& random) const;
+
+  /// Returns the ray on which a path leaves its last of some collisions; no value if it leaves the
+  /// field before.
+  [[nodiscard]] std::optional<CloudRay> AfterCollisions(CloudRay ray, int collisions,
+                                                        PathRandom& random) const;
+
   /// Returns an unbiased estimate of the transmittance of clouds from a point to the sun.
   [[nodiscard]] double SunTransmittance(const glm::dvec3& point, PathRandom& random) const;
 
@@ -149,6 +157,7 @@ class CloudPathTracer {
 
   [[nodiscard]] double GroundDistance_m(const CloudRay& ray) const;
   [[nodiscard]] const PhaseFunction& PhaseAt(const glm::dvec3& point, PathRandom& random) const;
+  void Follow(Walker& walker, PathRandom& random, int max_order) const;
   void Collide(Walker& walker, PathRandom& random, int max_order) const;
   void Reflect(Walker& walker, PathRandom& random) const;
   [[nodiscard]] double SideRay(const Walker& walker, const PhaseFunction& phase,

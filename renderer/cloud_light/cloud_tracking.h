@@ -17,8 +17,12 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
+#include <vector>
 
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase.h"
 #include "renderer/clouds/cloud_field.h"
+#include "renderer/layer.h"
 
 namespace alpenglow::renderer {
 
@@ -36,14 +40,17 @@ struct CloudRay {
 class CloudTracker {
  public:
   /// @param uses_detail  whether the extinction is that with the detail below a voxel.
-  CloudTracker(const CloudField& field, bool uses_detail)
+  /// @param scale  times the extinction, in (0, 1]: CloudOptics::extinction_scale().
+  CloudTracker(const CloudField& field, bool uses_detail, double scale = 1.0)
       : field_(&field),
         bounds_(field.Bounds()),
         is_periodic_(field.lattice().is_periodic),
-        uses_detail_(uses_detail) {}
+        uses_detail_(uses_detail),
+        scale_(scale) {}
 
   [[nodiscard]] double Extinction_per_m(const glm::dvec3& point) const {
-    return uses_detail_ ? field_->DetailedExtinction_per_m(point) : field_->Extinction_per_m(point);
+    return scale_ * (uses_detail_ ? field_->DetailedExtinction_per_m(point)
+                                  : field_->Extinction_per_m(point));
   }
 
   /// Returns the distance to the next collision; no value if there is none up to `farthest_m`.
@@ -78,6 +85,11 @@ class CloudTracker {
   /// `step_m`.
   [[nodiscard]] double OpticalDepth(const CloudRay& ray, double farthest_m, double step_m) const;
 
+  /// Returns the distance at which the ray has an optical depth, by the rule of the middle on steps of
+  /// at most `step_m`; no value if it has less.
+  [[nodiscard]] std::optional<double> DistanceAt(const CloudRay& ray, double depth,
+                                                 double step_m) const;
+
   /// Calls visit(begin_m, end_m, majorant_per_m) for the stretches of a ray with cloud, in order,
   /// until it returns false.
   template <typename Visit>
@@ -87,7 +99,7 @@ class CloudTracker {
     while (at_m < end_m) {
       const CloudSpan span = field_->SpanAhead(ray.At(at_m), ray.direction);
       const double next_m = std::min(at_m + span.length_m, end_m);
-      if (span.majorant_per_m > 0.0 && !visit(at_m, next_m, span.majorant_per_m)) return;
+      if (span.majorant_per_m > 0.0 && !visit(at_m, next_m, scale_ * span.majorant_per_m)) return;
       at_m = next_m;
     }
   }
@@ -129,6 +141,42 @@ class CloudTracker {
   const CloudField* field_;
   CloudBox bounds_;
   bool is_periodic_, uses_detail_;
+  double scale_;
 };
+
+/// The optical depth along a ray, linear between nodes. Distances of first collisions that are drawn
+/// from it are stratified if their fractions are.
+class CloudDepths {
+ public:
+  /// Adds the depths of steps of at most `step_m`, by the rule of the middle, until the ray ends or
+  /// the depth exceeds kDeepest.
+  CloudDepths(const CloudTracker& tracker, const CloudRay& ray, double length_m, double step_m);
+
+  /// Returns the optical depth of the ray; that beyond kDeepest is omitted.
+  [[nodiscard]] double depth() const { return nodes_.empty() ? 0.0 : nodes_.back().depth; }
+  /// Returns the distance of a first collision. The ray must have one: depth() > 0.
+  /// @param fraction  of the collisions that are nearer, in [0, 1).
+  [[nodiscard]] double Collision_m(double fraction) const;
+
+  static constexpr double kDeepest = 16.0;
+
+ private:
+  /// The end of a step of constant extinction, and the optical depth up to it.
+  struct Node {
+    double begin_m, end_m, depth;
+  };
+  std::vector<Node> nodes_;
+};
+
+/// Returns the direction at an angle from an axis.
+[[nodiscard]] glm::dvec3 TurnedFrom(const glm::dvec3& axis, double cosine, double azimuth_rad);
+
+/// Returns a direction drawn from a phase function around a direction.
+template <typename Random>
+[[nodiscard]] glm::dvec3 ScatteredFrom(const glm::dvec3& direction, const PhaseFunction& phase,
+                                       Random& random) {
+  const double cosine = SampleCosine(phase, random.Next());
+  return TurnedFrom(direction, cosine, 2.0 * kPi * random.Next());
+}
 
 }  // namespace alpenglow::renderer

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Measures the fast method of light in clouds (renderer/cloud_light/cloud_light.h) relative to traced
+// Measures the methods of light in clouds (renderer/cloud_light/cloud_light.h) relative to traced
 // paths, for six views of one field:
 //   cloud_light_study [GENUS [SEED [SUN_DEG [PERIOD_KM [PATHS [DROPLETS [CELLS_M...]]]]]]]
 // with DROPLETS 0 for the phase function of Henyey and Greenstein (g = 0.85) or 1 for droplets.
-// The views, the errors and the whole light are those of renderer/report/cloud_views.h. Times are of the processor, for all threads together. Without paths (0) only times count.
+// The views, the errors and the whole light are those of renderer/report/cloud_views.h. Times are of
+// the processor, for all threads together. Without paths (0) only times count.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +33,9 @@ namespace {
 constexpr CloudRaster kRaster{16, 9};
 // Rays are followed again to measure their time.
 constexpr int kRepeats = 50;
+// True collisions and paths of rays; without collisions all are true ones.
+constexpr std::array<CloudHybridOptions, 4> kPaths{
+    {{2, 64}, {2, 128}, {8, 128}, {std::nullopt, 64}}};
 
 struct StudyPixel {
   std::size_t view;
@@ -61,21 +67,39 @@ std::vector<StudyPixel> TracedPixels(const CloudField& field, const CloudPathTra
   return pixels;
 }
 
+/// Returns the noise of the whole light, relative as in CloudErrors, from rays a millimetre above:
+/// they have other random numbers.
+double NoiseOf(const CloudLight& light, const std::vector<StudyPixel>& pixels,
+               const std::vector<CloudRayLight>& found, const std::vector<double>& mean_whole) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto& [view, ray, traced] = pixels[i];
+    const CloudRayLight again =
+        light.Radiance({ray.origin + glm::dvec3(0.0, 0.0, 1e-3), ray.direction});
+    const double scale = std::max(WholeCloudLight(traced).value, kDarkestCloud * mean_whole[view]);
+    const double change = WholeCloudLight(found[i], ray) - WholeCloudLight(again, ray);
+    squares += 0.5 * std::pow(change / scale, 2);
+  }
+  return std::sqrt(squares / static_cast<double>(pixels.size()));
+}
+
+/// @param repeats  for the time.
 void PrintErrors(const CloudLight& light, const std::vector<CloudView>& views,
-                 const std::vector<StudyPixel>& pixels) {
+                 const std::vector<StudyPixel>& pixels, int repeats) {
   const Stopwatch time;
   std::vector<CloudRayLight> found;
-  for (int i = 0; i < kRepeats; ++i) {
+  for (int i = 0; i < repeats; ++i) {
     found.clear();
     for (const StudyPixel& pixel : pixels) found.push_back(light.Radiance(pixel.ray));
   }
-  const double us = 1e6 * time.processor_s() / static_cast<double>(kRepeats * pixels.size());
+  const double us = 1e6 * time.processor_s() / static_cast<double>(pixels.size()) / repeats;
   std::vector<double> mean(views.size()), mean_whole(views.size()), count(views.size());
   for (const StudyPixel& pixel : pixels) {
     mean[pixel.view] += pixel.traced.sun.value;
     mean_whole[pixel.view] += WholeCloudLight(pixel.traced).value;
     count[pixel.view] += 1.0;
   }
+  for (std::size_t view = 0; view < views.size(); ++view) mean_whole[view] /= count[view];
   CloudErrors sun, whole, sky;
   std::string by_view;
   for (std::size_t view = 0; view < views.size(); ++view) {
@@ -87,8 +111,7 @@ void PrintErrors(const CloudLight& light, const std::vector<CloudView>& views,
         errors->Add(found[i].sun, pixels[i].traced.sun, mean[view] / count[view]);
       }
       for (CloudErrors* errors : {&whole, &of_whole}) {
-        errors->Add(WholeCloudLight(found[i], pixels[i].ray), truth,
-                    mean_whole[view] / count[view]);
+        errors->Add(WholeCloudLight(found[i], pixels[i].ray), truth, mean_whole[view]);
       }
       const bool is_upward = pixels[i].ray.direction.z >= 0.0;
       sky.Add(found[i].sky + (is_upward ? found[i].scaled_transmittance : 0.0),
@@ -97,9 +120,26 @@ void PrintErrors(const CloudLight& light, const std::vector<CloudView>& views,
     by_view += fmt::format(" {:.1f} {:+.1f} / {:.1f} {:+.1f} |", 100 * of_sun.Rms(),
                            100 * of_sun.Bias(), 100 * of_whole.Rms(), 100 * of_whole.Bias());
   }
-  fmt::print(" {:.1f} | {:.1f} {:+.1f} | {:.1f} {:+.1f} | {:.1f} {:+.1f} |{}\n", us,
-             100 * sun.Rms(), 100 * sun.Bias(), 100 * whole.Rms(), 100 * whole.Bias(),
-             100 * sky.Rms(), 100 * sky.Bias(), by_view);
+  fmt::print(" {:.1f} | {:.1f} {:+.1f} | {:.1f} ({:.1f}) {:+.1f} | {:.1f} {:+.1f} |{}\n", us,
+             100 * sun.Rms(), 100 * sun.Bias(), 100 * whole.Rms(),
+             100 * NoiseOf(light, pixels, found, mean_whole), 100 * whole.Bias(), 100 * sky.Rms(),
+             100 * sky.Bias(), by_view);
+}
+
+/// Prints a row for each choice of paths.
+void PrintPaths(const CloudField& field, const CloudScatterers& scatterers,
+                const CloudSurroundings& surroundings, CloudLightOptions options,
+                const std::vector<CloudView>& views, const std::vector<StudyPixel>& pixels) {
+  for (const CloudHybridOptions& paths : kPaths) {
+    options.paths = paths;
+    options.method = paths.collisions ? CloudLightMethod::kHybrid : CloudLightMethod::kTraced;
+    const Stopwatch time;
+    const CloudLight light(field, scatterers, surroundings, options);
+    fmt::print("| {} m, {}, {} collisions, {} paths | {:.2f}, {:.2f} | | |", options.moments.cell_m,
+               NameOf(options.method), paths.collisions ? std::to_string(*paths.collisions) : "all",
+               paths.paths, time.processor_s(), time.wall_s());
+    PrintErrors(light, views, pixels, 1);
+  }
 }
 
 struct StudyCase {
@@ -138,7 +178,7 @@ void RunStudy(const StudyCase& study) {
              fluxes.mean.direct_at_base.value);
   fmt::print(
       "| cell, factor | processor s, wall s | sweeps of sun, sky | MB | us a ray | sun: rms, "
-      "bias % | whole | sky |");
+      "bias % | whole: rms (noise), bias % | sky |");
   for (const CloudView& view : views) fmt::print(" {}: sun / whole |", view.name);
   fmt::print("\n");
   for (const double cell_m : study.cells_m) {
@@ -152,7 +192,7 @@ void RunStudy(const StudyCase& study) {
                  is_fitted ? "fitted" : "1", time.processor_s(), time.wall_s(),
                  light.sun_moments().sweeps, light.sky_moments().sweeps,
                  static_cast<double>(light.bytes()) / 1e6);
-      PrintErrors(light, views, pixels);
+      PrintErrors(light, views, pixels, kRepeats);
       if (!is_fitted) {
         const double mu_s = surroundings.to_sun.z;
         fmt::print("  fluxes: up {:.4f}, down {:.4f}, direct {:.4f}\n",
@@ -164,6 +204,7 @@ void RunStudy(const StudyCase& study) {
                    gathered.up_at_top, gathered.down_at_base, gathered.direct_at_base);
         for (const double each : light.factor().node) fmt::print(" {:.3f}", each);
         fmt::print("\n");
+        PrintPaths(field, scatterers, surroundings, with, views, pixels);
       }
     }
   }
