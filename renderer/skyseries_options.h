@@ -68,7 +68,7 @@ struct SkyseriesOptions {
 /// Texts of the options of light and picture, as typed. ReadPictureOptions reads them once the
 /// whole command line is known, because they depend on each other.
 struct PictureOptionTexts {
-  std::string size = "1280x720", filter = "blackman-harris", glare = "none";
+  std::string size = "1280x720", filter = "blackman-harris", cloud_light = "fast", glare = "none";
   DisplayOptions display;
   std::optional<int> samples, paths;
   std::optional<std::string> effects, max_error, noise;
@@ -241,6 +241,13 @@ inline void AddRayOptions(CLI::App& app, PictureOptionTexts& texts) {
                  "aliasing")
       ->check(CLI::IsMember(PixelFilterNames()))
       ->capture_default_str();
+  app.add_option("--cloud-light", texts.cloud_light,
+                 "Light in clouds: fast (by the table of a solution, without noise), hybrid (64 "
+                 "paths a ray, which end in the table after 2 collisions) or traced (64 paths a "
+                 "ray, exact but for their noise)")
+      ->check(CLI::IsMember(CloudLightMethodNames()))
+      ->excludes(app.get_option("--paths"))
+      ->capture_default_str();
 }
 
 inline void AddEffectOptions(CLI::App& app, PictureOptionTexts& texts) {
@@ -281,6 +288,7 @@ inline void AddEffectOptions(CLI::App& app, PictureOptionTexts& texts) {
                      : effects == "auto" ? EffectSet::All()
                                          : EffectsFromText(effects);
   settings.filter = PixelFilterFromName(texts.filter);
+  settings.cloud_light = CloudLightMethodFromName(texts.cloud_light);
   settings.layers = LayersFromNames(texts.layers);
   if (texts.display.night_vision) settings.layers.push_back(PictureLayer::kScotopic);
   return settings;

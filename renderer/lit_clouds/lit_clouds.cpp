@@ -96,13 +96,14 @@ Spectrum LampsOnClouds(const CloudsOnRay& clouds, const LampLight& lamps,
 }
 
 LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
-                     const SolvedAir& air, const DistantLight& light)
+                     const SolvedAir& air, const DistantLight& light, CloudLightMethod method)
     : clouds_(std::move(clouds)), geometry_(geometry), air_(air), light_(light) {
   std::vector<std::shared_ptr<const CloudSunDepths>> suns;
   double highest_m = 0.0;
   for (std::size_t i = 0; i < layers(); ++i) {
     // The depths live as long as the solution.
     suns.emplace_back(clouds_, &Layer(i).sun());
+    along_rays_.push_back(Layer(i).WithMethod(method));
     highest_m = std::max(highest_m, RangeOf(i).high_m);
   }
   shadow_ = std::make_shared<const CloudShadow>(std::move(suns), highest_m, geometry.radius_m());
@@ -247,8 +248,8 @@ CloudsOnRay LitClouds::Along(const glm::dvec3& origin, const glm::dvec3& directi
   CloudsOnRay clouds;
   double left = 1.0, unscattered = 1.0;
   for (const Part& part : parts) {
-    const CloudRayLight grey =
-        Layer(part.layer).Radiance({part.chord.origin, part.chord.direction}, part.chord.length_m);
+    const CloudRayLight grey = along_rays_[part.layer].Radiance(
+        {part.chord.origin, part.chord.direction}, part.chord.length_m);
     if (grey.transmittance >= 1.0) continue;
     const double distance_m = part.chord.OnRay(grey.mean_distance_m);
     clouds.Add(Screen(part.layer, grey, origin + distance_m * direction, distance_m));

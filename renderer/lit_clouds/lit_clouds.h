@@ -115,9 +115,10 @@ Spectrum CloudsOnRay::Dimmed(const Spectrum& whole, const Upto& upto) const {
 /// Immutable; safe to use from many threads. Refers to geometry and air.
 class LitClouds {
  public:
-  /// @param clouds  solved for the light.
+  /// @param clouds  solved for the light. @param method  of light along rays.
   LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
-            const SolvedAir& air, const DistantLight& light);
+            const SolvedAir& air, const DistantLight& light,
+            CloudLightMethod method = CloudLightMethod::kFast);
 
   /// Returns the clouds on a ray. @param length_m  may be infinite.
   [[nodiscard]] CloudsOnRay Along(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -157,6 +158,7 @@ class LitClouds {
   [[nodiscard]] std::size_t InterfaceAt(double altitude_m) const;
 
   std::shared_ptr<const SolvedClouds> clouds_;
+  std::vector<CloudLight> along_rays_;  // of each layer, by the method
   const SceneGeometry& geometry_;
   SolvedAir air_;
   DistantLight light_;

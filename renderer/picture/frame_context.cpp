@@ -155,9 +155,9 @@ void FrameContext::LightClouds() {
   Prepare(settings_.progress, "light of clouds");
   for (FrameLight& source : lights_) {
     const DistantLight& light = source.light.source;
-    source.clouds =
-        std::make_shared<const LitClouds>(scene_->clouds().At(instant_, light.direction.seen),
-                                          scene_->geometry(), over_ground_->air, light);
+    source.clouds = std::make_shared<const LitClouds>(
+        scene_->clouds().At(instant_, light.direction.seen), scene_->geometry(), over_ground_->air,
+        light, settings_.cloud_light);
   }
 }
 

@@ -30,6 +30,7 @@
 #include "lut/image/image.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/camera_rays.h"
+#include "renderer/cloud_light/cloud_light.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/effects/effects.h"
 #include "renderer/lamps/lamp_light.h"
@@ -61,6 +62,8 @@ struct RenderSettings {
   /// Excludes `noise` and layers of polarised light; effects of air, clouds and ground change nothing.
   /// Empty: the fast method.
   std::optional<int> paths = std::nullopt;
+  /// Method of light in clouds along rays; it changes nothing with `paths`.
+  CloudLightMethod cloud_light = CloudLightMethod::kFast;
   int air_nodes = 12;  // Gauss nodes along a ray to the sky
   EffectSet effects = EffectSet::All();
   bool share_air = true;  // between the rays of a pixel; false for comparison

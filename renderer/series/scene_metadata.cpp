@@ -331,6 +331,7 @@ Metadata PictureMetadata(const Scene& scene, const FileHashes& hashes,
   metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
   if (settings.noise) metadata["alpenglow.noise"] = fmt::format("{}", *settings.noise);
   if (settings.paths) metadata["alpenglow.paths"] = fmt::format("{}", *settings.paths);
+  if (!scene.clouds.empty()) metadata["alpenglow.cloud_light"] = NameOf(settings.cloud_light);
   metadata["alpenglow.filter"] = NameOf(settings.filter);
   metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
   metadata["alpenglow.effects"] = NameOf(settings.effects);

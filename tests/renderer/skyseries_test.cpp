@@ -111,7 +111,7 @@ TEST_F(Skyseries, HelpAndVersionArePrinted) {
         "--shutter",    "--fps",           "--exposure", "--tone-map", "--look",
         "--resume",     "--contact-sheet", "--latitude", "--dem",      "--white-balance",
         "--atmosphere", "--threads",       "--quiet",    "--progress", "--version",
-        "--clouds",     "Example"})
+        "--clouds",     "--cloud-light",   "Example"})
     EXPECT_THAT(outcome.out, HasSubstr(option));
   const Outcome version = Run("--version");
   EXPECT_EQ(version.status, 0);
@@ -281,7 +281,8 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
   std::istringstream wrong(
       "--size 0x5;--size 5;--exposure bright;--exposure nan;--tone-map filmic;--look golden;"
       "--white-balance warm;--aov smell;--samples 0;--samples 1025;--noise 0;--noise 2%;"
-      "--glare lens;--filter lanczos;--threads -1;--effects bloom;--effects auto,sky;"
+      "--glare lens;--filter lanczos;--cloud-light slow;--threads -1;--effects bloom;--effects "
+      "auto,sky;"
       "--effects auto --no-shafts;--effects all --max-error 1%;--max-error 0;--max-error 1%%;"
       "--max-error 101%;--from sunrise;--progress loud;--at noon --from sunrise --to sunset;"
       "--from sunrise --to sunset --every 1h --count 3;--keogram k.jpg;--plot p.png;"

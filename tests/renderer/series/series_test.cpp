@@ -23,6 +23,7 @@
 #include "lut/image/night_vision.h"
 #include "lut/image/png.h"
 #include "lut/image/white_balance.h"
+#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_fields.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/contact_sheet.h"
@@ -541,6 +542,20 @@ TEST_F(Provenance, FingerprintsFollowSettingsAndTerrain) {
   EXPECT_NE(Fingerprint(RecordOf(scene)), first);
   fs::remove(folder_ / "dem.tif");
   EXPECT_THROW((void)RecordOf(scene), InputError);
+}
+
+TEST_F(Provenance, RecordsNameTheMethodOfLightInClouds) {
+  Scene scene;
+  scene.medium = MediumPreset("earth");
+  RenderSettings settings;
+  settings.cloud_light = CloudLightMethod::kHybrid;
+  const auto record = [&] { return PictureMetadata(scene, HashFilesOf(scene), settings); };
+  EXPECT_EQ(record().count("alpenglow.cloud_light"), 0U) << "without clouds all are the same";
+  scene.clouds = CloudsFromText("fair");
+  EXPECT_EQ(record().at("alpenglow.cloud_light"), "hybrid");
+  const std::string hybrid = Fingerprint(record());
+  settings.cloud_light = CloudLightMethod::kFast;
+  EXPECT_NE(Fingerprint(record()), hybrid) << "--resume must not mix methods";
 }
 
 /// A key of scene.toml with two values; an empty value leaves the key out.
