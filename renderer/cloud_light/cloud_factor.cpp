@@ -110,7 +110,8 @@ CloudFactor FitCloudFactor(const CloudField& field, const CloudGather& gather,
   FactorEquations equations;
   for (const FactorRay& ray : rays) {
     const double scale = std::max(CloudFactor{}.Sun(ray.parts), kLeastOfMean * mean);
-    equations.Add(ray, 1.0 / (scale * mean));
+    // Rays from inside scatter more, and few of them are bright: their errors count by the variance.
+    equations.Add(ray, 1.0 / (scale * (options.collisions > 0 ? scale : mean)));
   }
   const double common = equations.Common();
   const double variance = kPathVariance / options.paths_per_ray;

@@ -7,9 +7,10 @@
 // exact method along random rays that enter through the top and the base, or that paths from there
 // take after some collisions. The square of a ray's error counts relative to its radiance, at least a
 // tenth of the mean, as for counted photons. Relative to the square of the radiance, dark rays would
-// outweigh bright ones and leave them 0.5 to 1.5 % too dark in cumulus. Factors of neighbouring nodes
-// are expected to differ by 0.3, so that noise of the paths does not make them alternate. The fit
-// holds for one field and one sun.
+// outweigh bright ones and leave them 0.5 to 1.5 % too dark in cumulus. Rays after collisions have
+// more noise, of which most is in few bright ones: theirs counts relative to the square. Factors of
+// neighbouring nodes are expected to differ by 0.3, so that noise of the paths does not make them
+// alternate. The fit holds for one field and one sun.
 #pragma once
 
 #include <array>
