@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Compares pictures of the fast method with paths through the whole scene
 // (renderer/path_tracing/scene_path_tracer.h), over a plain:
-//   scene_path_study [CLOUDS [SUN_DEG [PATHS]]]
-// with the text of --clouds. Views look from the ground to both sides of the sun, and down from 4 km.
+//   scene_path_study [CLOUDS [SUN_DEG [PATHS [AIR]]]]
+// with the text of --clouds, and AIR 0 for a planet without air. Views look from the ground to both sides of the sun, and down from 4 km.
 // Pixels are single rays. Groups are the sky beside clouds, clouds that dim by half or more, the ground
 // in their shadow, and the ground in the sun. Errors are root mean square and bias of luminance
 // relative to the traced pixel, in per cent; the standard errors of the paths are subtracted from the
@@ -41,12 +41,29 @@ constexpr StudyView kViews[] = {{"towards the sun", 2.0, 50.0, 22.0},
                                 {"away from the sun", 2.0, 180.0, 22.0},
                                 {"down from 4 km", 4000.0, 120.0, -40.0}};
 
-Scene SceneUnder(const std::string& clouds, const StudyView& view, double sun_azimuth_deg) {
+/// The air of the earth's preset, or none.
+Medium AirOf(bool has_air) {
+  Medium medium = MediumPreset("earth");
+  if (has_air) return medium;
+  for (auto* values : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                       &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
+    std::ranges::fill(*values, 0.0);
+  return medium;
+}
+
+struct StudySky {
+  std::string clouds = "cumulus 0.25";
+  double sun_deg = 35.0;
+  int paths = 512;
+  bool has_air = true;
+};
+
+Scene SceneUnder(const StudySky& sky, const StudyView& view, double sun_azimuth_deg) {
   Scene scene;
   scene.place = {46.5, 8.0, 0.0};
-  scene.medium = MediumPreset("earth");
+  scene.medium = AirOf(sky.has_air);
   scene.terrain.kind = TerrainSource::Kind::kNone;
-  scene.clouds = CloudsFromText(clouds);
+  scene.clouds = CloudsFromText(sky.clouds);
   double heading_deg = sun_azimuth_deg + view.from_sun_deg;
   heading_deg -= 360.0 * std::floor(heading_deg / 360.0);
   scene.camera = CameraFromDegrees({view.height_m, false}, heading_deg, view.pitch_deg, 0.0, 70.0);
@@ -60,7 +77,7 @@ struct StudyTime {
 };
 
 StudyTime MorningWith(double elevation_deg) {
-  const SceneRenderer renderer(SceneUnder("none", kViews[0], 0.0));
+  const SceneRenderer renderer(SceneUnder({.clouds = "none"}, kViews[0], 0.0));
   const UtcTime midnight = ParseInstant("2026-06-21T03:00:00Z");
   for (double second = 0.0; second < 32400.0; second += 10.0) {
     const UtcTime time = AddSeconds(midnight, second);
@@ -121,15 +138,15 @@ std::string GroupOf(const FrameContext& frame, const PixelShader& shader, double
   return sun > 0.95 ? "ground in the sun" : sun < 0.5 ? "ground in shadow" : "";
 }
 
-void Compare(const StudyView& view, const StudyTime& when, const std::string& clouds, int paths,
+void Compare(const StudyView& view, const StudyTime& when, const StudySky& sky,
              std::map<std::string, StudyGroup>& all) {
-  const PreparedScene scene(SceneUnder(clouds, view, when.azimuth_deg), nullptr);
+  const PreparedScene scene(SceneUnder(sky, view, when.azimuth_deg), nullptr);
   RenderSettings settings;
   settings.width = kWide;
   settings.height = kHigh;
   settings.samples_per_pixel = 1;
   RenderSettings with_paths = settings;
-  with_paths.paths = paths;
+  with_paths.paths = sky.paths;
   const FrameContext traced_frame(scene, when.time, with_paths);
   const FrameContext fast_frame = traced_frame.Sampled(settings);
   const PixelShader traced_shader(traced_frame), fast_shader(fast_frame);
@@ -147,33 +164,38 @@ void Compare(const StudyView& view, const StudyTime& when, const std::string& cl
   std::map<std::string, StudyGroup> groups;
   for (int i = 0; i < kWide * kHigh; ++i) {
     const std::string group = GroupOf(fast_frame, fast_shader, i % kWide + 0.5, i / kWide + 0.5);
-    if (group.empty()) continue;
+    if (group.empty() || (group == "sky" && !sky.has_air)) continue;
     groups[group].Add(scene.colour(), pixels[static_cast<std::size_t>(i)]);
     all[group].Add(scene.colour(), pixels[static_cast<std::size_t>(i)]);
   }
   for (const auto& [name, group] : groups)
     fmt::print("{}", group.Line(fmt::format("{}: {}", view.name, name)));
-  fmt::print("  {:.2f} ms of the processor per path\n", 1e3 * took_s / (kWide * kHigh) / paths);
+  fmt::print("  {:.2f} ms of the processor per path\n", 1e3 * took_s / (kWide * kHigh) / sky.paths);
 }
 
-int Study(const std::string& clouds, double sun_deg, int paths) {
-  const StudyTime when = MorningWith(sun_deg);
-  fmt::print("{}, sun {} degrees high, {} paths per pixel\n", clouds, sun_deg, paths);
+void RunStudy(const StudySky& sky) {
+  const StudyTime when = MorningWith(sky.sun_deg);
+  fmt::print("{}, sun {} degrees high, {} paths per pixel, {} air\n", sky.clouds, sky.sun_deg,
+             sky.paths, sky.has_air ? "with" : "without");
   fmt::print("{:46} {:>6} {:>7} {:>7}   {:>6} {:>6} {:>6}   {:>6}\n", "view: group", "pixels",
              "rms", "bias", "red", "green", "blue", "noise");
   std::map<std::string, StudyGroup> all;
-  for (const StudyView& view : kViews) Compare(view, when, clouds, paths, all);
+  for (const StudyView& view : kViews) Compare(view, when, sky, all);
   for (const auto& [name, group] : all) fmt::print("{}", group.Line("all views: " + name));
-  return 0;
 }
 
 }  // namespace
 }  // namespace alpenglow::renderer
 
-int main(int argc, char** argv) {
+int main(int count, char** arguments) {
   using alpenglow::atmosphere::ParseNumber;
-  const std::string clouds = argc > 1 ? argv[1] : "cumulus 0.25";
-  const double sun_deg = argc > 2 ? ParseNumber(argv[2]).value_or(35.0) : 35.0;
-  const double paths = argc > 3 ? ParseNumber(argv[3]).value_or(512.0) : 512.0;
-  return alpenglow::renderer::Study(clouds, sun_deg, static_cast<int>(paths));
+  alpenglow::renderer::StudySky sky;
+  const auto number = [&](int i, double otherwise) {
+    return i < count ? ParseNumber(arguments[i]).value_or(otherwise) : otherwise;
+  };
+  if (count > 1) sky.clouds = arguments[1];
+  sky.sun_deg = number(2, sky.sun_deg);
+  sky.paths = static_cast<int>(number(3, sky.paths));
+  sky.has_air = number(4, 1.0) != 0.0;
+  alpenglow::renderer::RunStudy(sky);
 }
