@@ -25,8 +25,17 @@ CloudLayerFluxes FluxesOf(const CloudLight& light) {
   return fluxes;
 }
 
-/// Returns a ratio of fluxes; 1 in the dark.
-double Ratio(double flux, double clear) { return clear > 0.0 ? flux / clear : 1.0; }
+/// Returns the radiance of higher orders of a clear sky, integrated over all directions.
+std::vector<double> DiffuseIntensity(const SolvedAir& air, double altitude_m, double mu_s) {
+  const MultipleScattering& orders = air.multiple_scattering();
+  const double altitude = std::sqrt(altitude_m / air.medium().atmosphere_height_m);
+  const std::vector<float> moments =
+      orders.ValuesAt(altitude, MultipleScattering::SunCoordinate(mu_s));
+  std::vector<double> intensity(air.bands());
+  for (std::size_t band = 0; band < intensity.size(); ++band)
+    intensity[band] = std::sqrt(4.0 * kPi) * static_cast<double>(moments[band]);
+  return intensity;
+}
 
 /// Returns the layers in a beam [per unit beam]. @param beams  of each layer.
 std::vector<CloudLayerFluxes> LitBy(std::vector<CloudLayerFluxes> layers,
@@ -137,6 +146,7 @@ void LitClouds::FindExchange() {
   const LocalLight above = LocalLightAt(geometry_, {0.0, 0.0, top_m}, light_);
   const LocalLight below = LocalLightAt(geometry_, {0.0, 0.0, 0.0}, light_);
   const Spectrum sky = air_.multiple_scattering().Irradiance(top_m, above.mu_s_for_air, 1.0, 1.0);
+  const std::vector<double> intensity = DiffuseIntensity(air_, top_m, above.mu_s_for_air);
   const double sine = std::max(below.mu_s_effective, 0.0);
   const Spectrum direct = static_cast<float>(sine) * MeanBeam(0.0, layers());
   const Spectrum clear_direct =
@@ -162,8 +172,13 @@ void LitClouds::FindExchange() {
     sky_left_.back()[band] = 1.0F;
     const InterfaceFluxes clear =
         FluxesBetween({}, {from_sky, static_cast<double>(clear_direct[band])}, albedo).front();
-    for (std::size_t i = 0; i <= layers(); ++i)
-      diffuse_[i][band] = static_cast<float>(Ratio(all[i].down + all[i].up, clear.down + clear.up));
+    for (std::size_t i = 0; i <= layers(); ++i) {
+      const double left = of_sky[i].down;
+      const double change = (left - 1.0) * (intensity[band] - 2.0 * clear.up) +
+                            2.0 * (all[i].down - left * clear.down + all[i].up - clear.up);
+      diffuse_[i][band] = static_cast<float>(
+          intensity[band] > 0.0 ? std::max(1.0 + change / intensity[band], 0.0) : 1.0);
+    }
   }
 }
 

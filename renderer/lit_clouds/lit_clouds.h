@@ -11,10 +11,12 @@
 // Clouds stand in the air as screens at the mean distance of their light, which the air in front dims
 // and veils. Light that the air scatters more than once is that of a clear sky times
 //
-//   (d + u) / (d' + u')
+//   (T (I' - 2 u') + 2 (d - T d') + 2 u) / I'
 //
-// with the mean fluxes d down and u up at the interface below, between or above layers, and those d'
-// and u' without clouds: its directions are those of the clear sky.
+// with the mean fluxes d down and u up at the interface below, between or above layers, the fraction T
+// of skylight there, and without clouds the fluxes d' and u' and the diffuse radiance integrated over
+// all directions I'. Light of clouds and ground counts as even over a hemisphere, and the directions
+// of the light that is scattered are those of the clear sky.
 //
 // A sun below 3 degrees stands over a round planet: its beams are followed for kFarthestShade_m,
 // clouds see it longer than the ground, and light from below lights them. Light of higher orders is
@@ -133,8 +135,8 @@ class LitClouds {
   [[nodiscard]] SkyThroughMedia SkyOnSurface(double altitude_m, double cos_up,
                                              SkyThroughMedia above) const;
 
-  /// Returns the diffuse light in the air along a ray, below, between and above layers: the mean
-  /// fluxes down and up there, relative to those without clouds.
+  /// Returns the diffuse light in the air along a ray, below, between and above layers, relative to
+  /// that of a clear sky.
   [[nodiscard]] std::vector<DiffuseStretch> DiffuseInAir(const glm::dvec3& origin,
                                                          const glm::dvec3& direction) const;
 
