@@ -27,7 +27,7 @@ glm::dvec3 BeamDirection(const glm::dvec3& to_light) {
 CloudLightOptions LightOptions(double planet_radius_m) {
   CloudLightOptions options;
   options.low_sun.planet_radius_m = planet_radius_m;
-  options.low_sun.farthest_m = kFarthestShade_m;
+  options.low_sun.farthest_m = kFarthestCloudShade_m;
   return options;
 }
 

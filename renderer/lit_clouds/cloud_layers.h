@@ -31,7 +31,7 @@ struct SolvedClouds {
 
 /// Clouds at a greater distance towards a sun below kLowestCloudSun_deg do not shade clouds. A layer
 /// that went on without end would never be lit from below.
-inline constexpr double kFarthestShade_m = 120e3;
+inline constexpr double kFarthestCloudShade_m = 120e3;
 
 /// Generates and solves the clouds of a scene on demand, and keeps the last solutions: a frame of a
 /// series is metered in a small picture while the frame before it is developed, and the choice of

@@ -18,7 +18,7 @@
 // all directions I'. Light of clouds and ground counts as even over a hemisphere, and the directions
 // of the light that is scattered are those of the clear sky.
 //
-// A sun below 3 degrees stands over a round planet: its beams are followed for kFarthestShade_m,
+// A sun below 3 degrees stands over a round planet: its beams are followed for kFarthestCloudShade_m,
 // clouds see it longer than the ground, and light from below lights them. Light of higher orders is
 // that of the sun's height over the place of the scene.
 //
@@ -30,7 +30,7 @@
 //   - lamplight that the ground reflects to clouds, and the height of clouds over towns of light
 //     pollution (night_light.h);
 //   - clouds in the mirror of water, which shows the clear sky;
-//   - mountains in the way of beams to clouds, and clouds more than kFarthestShade_m away towards a
+//   - mountains in the way of beams to clouds, and clouds more than kFarthestCloudShade_m away towards a
 //     low sun.
 #pragma once
 

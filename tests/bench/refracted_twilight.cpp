@@ -93,9 +93,9 @@ void CompareBeam(const Medium& medium, double height_m, double apparent_deg) {
   const BandValues bent = RefractedTwilight(medium, height_m).Beam(apparent_rad, height_m);
   static const SingleScattering<float> kAir(medium);
   static const RefractedBeam kBeam(medium);
-  const Spectrum straight = kAir.TransmittanceToSpace(height_m, mu);
-  const Spectrum beam = kBeam.Left(kAir, height_m, mu);
-  const auto error = [&](const Spectrum& light, std::size_t band) {
+  const auto straight = kAir.TransmittanceToSpace(height_m, mu);
+  const auto beam = kBeam.Left(kAir, height_m, mu);
+  const auto error = [&](const auto& light, std::size_t band) {
     return 100.0 * (static_cast<double>(light[band]) / bent[band] - 1.0);
   };
   fmt::print("place at {:4.0f} m, sun seen at {:4.1f} deg, straight ray / BentBeam:", height_m,

@@ -28,7 +28,9 @@ const MediumTables& Phases() {
 }
 
 AirTables Tables(AirQuality quality, double altitude_m) {
-  return MakeAirTables(Earth(), Phases(), {altitude_m, 0.3}, AirTablesSizeOf(quality, altitude_m));
+  const glm::dvec3 to_light(std::sqrt(1.0 - 0.3 * 0.3), 0.0, 0.3);
+  return MakeAirTables(Earth(), Phases(), {altitude_m, Unrefracted(to_light)},
+                       AirTablesSizeOf(quality, altitude_m));
 }
 
 void MakingOfAirTables(benchmark::State& state) {

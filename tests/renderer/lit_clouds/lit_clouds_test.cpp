@@ -33,7 +33,7 @@ struct CloudStage {
           auto solved = std::make_shared<SolvedClouds>();
           CloudLightOptions options;
           options.factor.rays = 0;
-          options.low_sun.farthest_m = kFarthestShade_m;
+          options.low_sun.farthest_m = kFarthestCloudShade_m;
           solved->light.emplace_back(layers->front().field,
                                      CloudScatterers{CloudPhases(tests::LobeOf(0.8))},
                                      CloudSurroundings{.to_sun = sun.direction.seen}, options);
