@@ -2,7 +2,8 @@
 // Compares pictures of the fast method with paths through the whole scene
 // (renderer/path_tracing/scene_path_tracer.h), over a plain:
 //   scene_path_study [CLOUDS [SUN_DEG [PATHS [AIR]]]]
-// with the text of --clouds, and AIR 0 for a planet without air. Views look from the ground to both sides of the sun, and down from 4 km.
+// with the text of --clouds, and AIR 0 for a planet without air. Views look from the ground to both
+// sides of the sun, and down from 4 km.
 // Pixels are single rays. Groups are the sky beside clouds, clouds that dim by half or more, the ground
 // in their shadow, and the ground in the sun. Errors are root mean square and bias of luminance
 // relative to the traced pixel, in per cent; the standard errors of the paths are subtracted from the
