@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 to pictures: packages, build, then the built-in mountain range from an hour
-# before sunrise to an hour after sunset, its noon first. The pictures are in out/.
+# From a fresh Debian 12 to pictures: packages, build, then the built-in mountain range under clouds of
+# fair weather, from an hour before sunrise to sunset, its noon first. The pictures are in out/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -8,14 +8,14 @@ bash .ci/install-packages.sh
 build=build/quickstart
 mkdir -p out
 day=("$build/renderer/skyseries" --out 'out/day.%04d.exr' --png --size 640x360
-  --date 2026-03-21 --from sunrise-1h --to sunset+1h --every 40m)
+  --clouds fair --date 2026-03-21 --from sunrise-1h --to sunset+1h --every 80m)
 
 echo "Building the renderer"
 cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DALPENGLOW_TESTS=OFF \
   -DCMAKE_UNITY_BUILD=ON >/dev/null  # halves the time of a first build
 cmake --build "$build" --target skyseries
-"${day[@]}" --quiet --frames 10
-echo "The first picture: out/day.0010.png"
+"${day[@]}" --quiet --frames 5
+echo "The first picture: out/day.0005.png"
 
 echo "Rendering the day"
 "${day[@]}" --resume --contact-sheet out/day.png

@@ -73,9 +73,8 @@ ReadyCloudMethod ReadyOctaves(const CloudUnderSun& under, int count) {
           map->bytes()};
 }
 
-ReadyCloudMethod ReadyMoments(const CloudUnderSun& under, std::size_t factor_rays) {
-  const CloudLight light(*under.field, under.scatterers, under.surroundings,
-                         {.factor = {.rays = factor_rays}});
+ReadyCloudMethod ReadyMoments(const CloudUnderSun& under, const CloudLightOptions& options) {
+  const CloudLight light(*under.field, under.scatterers, under.surroundings, options);
   return {[light](const CloudRay& ray) { return light.Radiance(ray); }, light.bytes()};
 }
 
@@ -139,15 +138,19 @@ struct CloudMethod {
 };
 
 /// The methods, in the order of the tables. A new line is a new method.
-constexpr std::array<CloudMethod, 6> kCloudMethods{
+constexpr std::array<CloudMethod, 7> kCloudMethods{
     {{"single", "single scattering", "", MethodOrigin::kLiterature,
       [](const CloudUnderSun& under) { return ReadyOctaves(under, 1); }},
      {"octaves", "octaves (Wrenninge et al. 2013)", "8", MethodOrigin::kLiterature,
       [](const CloudUnderSun& under) { return ReadyOctaves(under, 8); }},
      {"moments", "moments on cells", "without factor", MethodOrigin::kOurs,
-      [](const CloudUnderSun& under) { return ReadyMoments(under, 0); }},
+      [](const CloudUnderSun& under) { return ReadyMoments(under, {.factor = {.rays = 0}}); }},
      {"fitted", "moments on cells", "fitted factor", MethodOrigin::kOurs,
-      [](const CloudUnderSun& under) { return ReadyMoments(under, CloudFactorOptions{}.rays); }},
+      [](const CloudUnderSun& under) { return ReadyMoments(under, {}); }},
+     {"hybrid", "paths that end in moments", "2 collisions, 64 paths", MethodOrigin::kOurs,
+      [](const CloudUnderSun& under) {
+        return ReadyMoments(under, {.method = CloudLightMethod::kHybrid});
+      }},
      {"paths16", "path tracing", "16 paths", MethodOrigin::kOurs,
       [](const CloudUnderSun& under) { return ReadyPaths(under, 16); }},
      {"paths251", "path tracing", "251 paths", MethodOrigin::kOurs,

@@ -229,7 +229,6 @@ TEST(AerialPerspective, FullSunlightIsTheSameAsALitPath) {
       << "moments of the pieces sum up to those of the whole; more nodes are used";
 }
 
-// Hard cases 14, 39.
 /// Returns a stretch that ends at a distance, with one factor in all bands.
 DiffuseStretch StretchTo(double end_m, float factor, std::size_t bands) {
   DiffuseStretch stretch{end_m, Spectrum(bands)};
@@ -264,6 +263,7 @@ TEST(AerialPerspective, DiffuseLightChangesByStretch) {
   }
 }
 
+// Hard cases 14, 39.
 TEST(AerialPerspective, LightGrowsFromZeroWithTheDistance) {
   const Air air(MediumPreset("earth"));
   ViewRay ray{1500.0, 0.02, 0.1, 0.9, 0.0};
