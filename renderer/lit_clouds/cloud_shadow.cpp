@@ -51,7 +51,10 @@ double EdgeHeightFor(double sunlight) {
 CloudShadow::CloudShadow(std::vector<std::shared_ptr<const CloudSunDepths>> suns,
                          double highest_cloud_m, double planet_radius_m)
     : suns_(std::move(suns)), highest_cloud_m_(highest_cloud_m), radius_m_(planet_radius_m) {
-  for (const auto& sun : suns_) mean_transmittance_ *= sun->MeanTransmittance();
+  for (const auto& sun : suns_) {
+    mean_transmittance_ *= sun->MeanTransmittance();
+    if (sun->low_sun() != nullptr) steps_ = kUnderLowSun;
+  }
 }
 
 double CloudShadow::Transmittance(const glm::dvec3& point) const {
@@ -77,7 +80,7 @@ SunlitPath CloudShadow::OnRay(const SunlitPath& path, const glm::dvec3& origin,
   const double begin_m = shaded.front().begin_m, end_m = shaded.back().end_m;
   SunlitPathBuilder builder;
   const auto left_at = [&](double distance_m) {
-    if (distance_m > kReach_m) return mean_transmittance_;
+    if (distance_m > steps_.reach_m) return mean_transmittance_;
     const glm::dvec3 point = origin + distance_m * direction;
     return distance_m > kSharpReach_m ? TransmittanceAround(point) : Transmittance(point);
   };
@@ -92,8 +95,9 @@ SunlitPath CloudShadow::OnRay(const SunlitPath& path, const glm::dvec3& origin,
     double at_m = from_m;
     double x = from_m < to_m ? lit_at(from_m) : -1.0;
     while (at_m < to_m) {
-      const double step_m =
-          at_m >= kReach_m ? to_m - at_m : std::max(kShortestStep_m, kStepPerDistance * at_m);
+      const double step_m = at_m >= steps_.reach_m
+                                ? to_m - at_m
+                                : std::max(steps_.shortest_m, steps_.per_distance * at_m);
       const double next_m = std::min(at_m + step_m, to_m);
       const double next_x = lit_at(next_m);
       builder.Add({at_m, next_m, x, next_x});

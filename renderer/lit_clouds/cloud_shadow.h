@@ -33,15 +33,22 @@ class CloudShadow {
   /// Returns the transmittance of all layers from a point to the light.
   [[nodiscard]] double Transmittance(const glm::dvec3& point) const;
 
-  /// Returns sunlight on a ray behind terrain and clouds. Samples of the shadow are kShortestStep_m
-  /// apart near the origin, and kStepPerDistance of the distance far away; beyond kSharpReach_m they
-  /// are means around points, and beyond kReach_m the mean of the layers holds.
+  /// Where samples of the shadow are taken along a ray.
+  struct Steps {
+    double shortest_m;    // distance of samples near the origin
+    double per_distance;  // and far away, relative to the distance
+    double reach_m;       // beyond it the mean of the layers holds
+  };
+  /// A beam near the horizon passes several clouds, so that it shows few edges, and has no map: a
+  /// sample costs a hundred times as much.
+  static constexpr Steps kByMap{50.0, 0.02, 120e3}, kUnderLowSun{200.0, 0.1, 40e3};
+  /// Samples of a map are means around points beyond this distance.
+  static constexpr double kSharpReach_m = 2000.0;
+
+  /// Returns sunlight on a ray behind terrain and clouds, by samples at kByMap or kUnderLowSun.
   /// @param path  sunlight behind terrain, within finite distances.
   [[nodiscard]] SunlitPath OnRay(const SunlitPath& path, const glm::dvec3& origin,
                                  const glm::dvec3& direction) const;
-
-  static constexpr double kShortestStep_m = 50.0, kStepPerDistance = 0.02;
-  static constexpr double kSharpReach_m = 2000.0, kReach_m = 120e3;
 
  private:
   /// Returns the product of the layers' means around a point.
@@ -50,6 +57,7 @@ class CloudShadow {
   std::vector<std::shared_ptr<const CloudSunDepths>> suns_;
   double highest_cloud_m_, radius_m_;
   double mean_transmittance_ = 1.0;
+  Steps steps_ = kByMap;
 };
 
 }  // namespace alpenglow::renderer
