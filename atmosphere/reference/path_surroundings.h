@@ -37,7 +37,7 @@ struct PathScatterer {
   double albedo;
 };
 
-/// What a path meets first on a segment.
+/// The first body that a path meets on a segment.
 struct PathMeeting {
   double distance_m;
   std::variant<PathSurface, PathScatterer> body;

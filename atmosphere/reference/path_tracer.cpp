@@ -320,7 +320,7 @@ struct Responses {
   std::vector<double> molecules, aerosol;
 };
 
-/// What paths travel through.
+/// The air and the bodies among which paths travel.
 struct PathMatter {
   const Scene& scene;
   const PolarisedScattering* polarised = nullptr;  // null: scalar light

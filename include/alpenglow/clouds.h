@@ -149,7 +149,7 @@ struct CloudRay {
   double length_m = std::numeric_limits<double>::infinity();
 };
 
-/// What is around a field, and its wavelength.
+/// The ground below a field, and the wavelength of its light.
 struct CloudSurroundings {
   /// Wavelength of the phase functions of droplets and ice, in [300, 1000].
   double wavelength_nm = 550.0;

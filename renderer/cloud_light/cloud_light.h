@@ -36,8 +36,8 @@
 
 namespace alpenglow::renderer {
 
-/// How light of sun, sky and ground is found along a ray: by the moments alone, by paths that end in
-/// them, or by paths alone. Paths have noise, which the mean over the rays of a pixel reduces. The
+/// The method by which light of sun, sky and ground is found along a ray: the moments alone, paths that
+/// end in them, or paths alone. Paths have noise, which the mean over the rays of a pixel reduces. The
 /// hybrid method fits a factor of its own, for light that paths see after their collisions.
 enum class CloudLightMethod { kFast, kHybrid, kTraced };
 

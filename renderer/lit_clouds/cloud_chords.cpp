@@ -53,6 +53,7 @@ glm::dvec3 InFlatFrame(const glm::dvec3& point, double planet_radius_m) {
   const auto arc_m = [&] {
     return planet_radius_m * std::atan2(std::sqrt(across_m2), from_centre_m);
   };
+  if (across_m2 == 0.0) return {0.0, 0.0, AltitudeOverSphere(point, planet_radius_m)};
   const double stretch =
       from_centre_m > 0.0 && square < kMostOfSeries
           ? planet_radius_m / from_centre_m *

@@ -33,7 +33,7 @@ class CloudShadow {
   /// Returns the transmittance of all layers from a point to the light.
   [[nodiscard]] double Transmittance(const glm::dvec3& point) const;
 
-  /// Where samples of the shadow are taken along a ray.
+  /// Distances between samples of the shadow along a ray.
   struct Steps {
     double shortest_m;    // distance of samples near the origin
     double per_distance;  // and far away, relative to the distance

@@ -58,9 +58,8 @@ struct RenderSettings {
   PixelFilter::Kind filter = PixelFilter::Kind::kBlackmanHarris;
   /// Number of paths of a pixel, in [1, 1048576]: the light of sun, moon and sky in air, clouds and on
   /// the ground is traced (path_tracing/scene_path_tracer.h). All rays have the same number of them,
-  /// rounded up.
-  /// Excludes `noise` and layers of polarised light; effects of air, clouds and ground change nothing.
-  /// Empty: the fast method.
+  /// rounded up. It excludes `noise` and layers of polarised light; effects of air, clouds and ground
+  /// change nothing. Empty: the fast method.
   std::optional<int> paths = std::nullopt;
   /// Method of light in clouds along rays; it changes nothing with `paths`.
   CloudLightMethod cloud_light = CloudLightMethod::kFast;
@@ -142,8 +141,9 @@ class SceneRenderer {
   [[nodiscard]] CountedPicture RenderCounted(const CameraSample& camera_sample,
                                              const RenderSettings& settings) const;
 
-  /// Renders without paths, with the subset of settings.effects that the picture needs (effect_choice.h). The
-  /// choice does not depend on the number of threads; the times in it are measured in this run.
+  /// Renders without paths, with the subset of settings.effects that the picture needs
+  /// (effect_choice.h). The choice does not depend on the number of threads; the times in it are
+  /// measured in this run.
   [[nodiscard]] ChosenPicture RenderWithin(const CameraSample& camera_sample,
                                            const RenderSettings& settings,
                                            const EffectBudget& budget) const;

@@ -249,7 +249,7 @@ ReportTable EmptyCloudTable(const ReportRegime& sun, const std::vector<CloudView
   return table;
 }
 
-/// What a method costs under one sun, and its light in all pixels.
+/// The cost of a method under one sun, and its light in all pixels.
 struct CloudMeasured {
   double bytes = 0.0, solve_s = 0.0;
   std::vector<CloudRayLight> light;

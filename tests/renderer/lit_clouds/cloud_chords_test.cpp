@@ -37,6 +37,17 @@ TEST(CloudChords, FlatFrameIsSeamlessFromTheOriginToTheOtherSide) {
   }
 }
 
+// A ray straight down leaves the planet on the other side, where no direction leads away from the
+// origin.
+TEST(CloudChords, PointsBelowTheOriginHaveAPlace) {
+  for (const double height_m : {2000.0, -5.0, -kEarth_m, -2.0 * kEarth_m - 3000.0}) {
+    const glm::dvec3 flat = InFlatFrame({0.0, 0.0, height_m}, kEarth_m);
+    EXPECT_EQ(flat.x, 0.0) << height_m;
+    EXPECT_EQ(flat.y, 0.0) << height_m;
+    EXPECT_NEAR(flat.z, std::abs(height_m + kEarth_m) - kEarth_m, 1e-6);
+  }
+}
+
 TEST(CloudChords, VerticalRayCrossesARangeOnce) {
   const auto chords =
       ChordsWithin({1000.0, 3000.0}, {10.0, 20.0, 5.0}, {0.0, 0.0, 1.0}, kNoEnd, kEarth_m);
