@@ -54,7 +54,9 @@ CloudLowSun::CloudLowSun(const CloudField& field, const glm::dvec3& to_sun,
                                        "the radius of the planet under clouds [m]")),
       step_m_(RequireInRange(options.step_m, 1.0, 100.0, "the step of a beam in clouds [m]")),
       farthest_m_(RequireInRange(options.farthest_m, 1e3, 4e5,
-                                 "the distance where beams in clouds end [m]")) {
+                                 "the distance where beams in clouds end [m]")),
+      full_m_(RequireInRange(options.full_m, 0.0, 4e5,
+                             "the distance up to which clouds shade in full [m]")) {
   azimuth_ = glm::normalize(glm::dvec2(to_sun));
 }
 
@@ -74,14 +76,14 @@ CloudLowSun::Interval CloudLowSun::Below(double altitude_m, double slope) const 
 
 double CloudLowSun::OpticalDepth(const glm::dvec3& point, double slope, double most_depth) const {
   double depth = 0.0;
-  EachChord(point, slope, [&](const CloudRay& ray, double length_m) {
+  EachChord(point, slope, [&](const CloudRay& ray, double length_m, double share) {
     const double away_m = glm::length(ray.origin - point);
     const double most_m = std::clamp(kStepPerDistance * away_m, step_m_, kMostStep * step_m_);
     tracker_.EachSpan(ray, length_m, [&](double begin_m, double end_m, double) {
       const double steps = std::ceil((end_m - begin_m) / most_m);
       const double step_m = (end_m - begin_m) / steps;
       for (double i = 0.0; i < steps && depth < most_depth; ++i) {
-        depth += step_m * tracker_.Extinction_per_m(ray.At(begin_m + (i + 0.5) * step_m));
+        depth += share * step_m * tracker_.Extinction_per_m(ray.At(begin_m + (i + 0.5) * step_m));
       }
       return depth < most_depth;
     });

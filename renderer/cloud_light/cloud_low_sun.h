@@ -13,8 +13,9 @@
 // lights them from below: its beams sink out of the layer, and cross it again far away. They are
 // followed up to there in chords of 2 km, which leave the parabola by 0.08 m. Fields repeat in x, y
 // and z of this frame, as if their plane were bent over the planet. A layer that goes on so far would
-// always shade itself from a sun below the horizontal; beams therefore end after a distance, beyond
-// which the air has no clouds.
+// always shade itself from a sun below the horizontal; clouds therefore get thinner from one distance
+// to another, beyond which there are none. A sharp end would draw a line on the layer, from which on
+// the beams of points return into it beyond the end.
 //
 // The sun is higher by s / R for points nearer to it. The ground does not end a beam.
 #pragma once
@@ -40,7 +41,10 @@ struct CloudLowSunOptions {
   glm::dvec2 place_m{0.0};           // where the sun has the given direction
   double planet_radius_m = 6.371e6;  // in [1e5, 1e9]; 7/6 of it for rays in refracting air
   double step_m = 20.0;              // in cloud, in [1, 100]; up to four times as long far away
-  double farthest_m = 4e5;           // where beams end, along the ground, in [1e3, 4e5]
+  /// Distance along the ground beyond which clouds do not shade, in [1e3, 4e5]. Their share of
+  /// extinction falls from one at `full_m` to nothing there.
+  double farthest_m = 4e5;
+  double full_m = 4e5;  // >= 0; from farthest_m on, beams end sharply
 };
 
 /// Immutable; safe to use from many threads. The field must outlive it.
@@ -84,6 +88,10 @@ class CloudLowSun {
   [[nodiscard]] double SlopeAt(const glm::dvec3& point) const {
     return std::tan(ElevationAt_rad(point));
   }
+  /// Returns the share of the extinction of clouds at a distance along the ground, up to farthest_m.
+  [[nodiscard]] double ShareAt(double distance_m) const {
+    return distance_m <= full_m_ ? 1.0 : (farthest_m_ - distance_m) / (farthest_m_ - full_m_);
+  }
   [[nodiscard]] double OpticalDepth(const glm::dvec3& point, double slope, double most_depth) const;
   /// A part of a beam.
   struct Interval {
@@ -92,8 +100,8 @@ class CloudLowSun {
   /// Returns where a beam is below an altitude, relative to the point where its slope is given: between
   /// the roots of a parabola that opens upwards.
   [[nodiscard]] Interval Below(double altitude_m, double slope) const;
-  /// Calls visit(ray, length_m) for chords of the beam between the altitudes of the field, in order,
-  /// until it returns false.
+  /// Calls visit(ray, length_m, share) for chords of the beam between the altitudes of the field, in
+  /// order, until it returns false; share is that of the extinction at their distance.
   /// @param slope  of the beam at the point.
   template <typename Visit>
   void EachChord(const glm::dvec3& point, double slope, const Visit& visit) const;
@@ -104,7 +112,7 @@ class CloudLowSun {
   glm::dvec2 azimuth_;     // unit vector to the sun on the ground
   double elevation_rad_;
   glm::dvec2 place_m_;
-  double per_radius_, step_m_, farthest_m_;
+  double per_radius_, step_m_, farthest_m_, full_m_;
 };
 
 /// Optical depths to a sun of any elevation from kLowestCloudLight_deg on: by a map from
@@ -165,7 +173,8 @@ void CloudLowSun::EachChord(const glm::dvec3& point, double slope, const Visit& 
       const glm::dvec3 from = along(at_m);
       const glm::dvec3 way = along(std::min(at_m + kChord_m, end_m)) - from;
       const double length_m = glm::length(way);
-      if (length_m > 0.0 && !visit(CloudRay{from, way / length_m}, length_m)) return false;
+      if (length_m > 0.0 && !visit(CloudRay{from, way / length_m}, length_m, ShareAt(at_m)))
+        return false;
     }
     return true;
   };
@@ -180,8 +189,8 @@ void CloudLowSun::EachChord(const glm::dvec3& point, double slope, const Visit& 
 template <typename Random>
 double CloudLowSun::Transmittance(const glm::dvec3& point, Random& random) const {
   double left = 1.0;
-  EachChord(point, SlopeAt(point), [&](const CloudRay& ray, double length_m) {
-    left *= tracker_.Transmittance(ray, length_m, random);
+  EachChord(point, SlopeAt(point), [&](const CloudRay& ray, double length_m, double share) {
+    left *= tracker_.Transmittance(ray, length_m, random, share);
     return left > 0.0;
   });
   return left;

@@ -28,6 +28,7 @@ CloudLightOptions LightOptions(double planet_radius_m) {
   CloudLightOptions options;
   options.low_sun.planet_radius_m = planet_radius_m;
   options.low_sun.farthest_m = kFarthestCloudShade_m;
+  options.low_sun.full_m = kFullCloudShade_m;
   return options;
 }
 

@@ -29,9 +29,10 @@ struct SolvedClouds {
   std::vector<CloudLight> light;  // of each layer, over black ground
 };
 
-/// Clouds at a greater distance towards a sun below kLowestCloudSun_deg do not shade clouds. A layer
-/// that went on without end would never be lit from below.
-inline constexpr double kFarthestCloudShade_m = 120e3;
+/// Towards a sun below kLowestCloudSun_deg, clouds up to the first distance shade others in full, and
+/// those beyond the second one not at all. A layer that went on without end would never be lit from
+/// below.
+inline constexpr double kFullCloudShade_m = 60e3, kFarthestCloudShade_m = 180e3;
 
 /// Generates and solves the clouds of a scene on demand, and keeps the last solutions: a frame of a
 /// series is metered in a small picture while the frame before it is developed, and the choice of

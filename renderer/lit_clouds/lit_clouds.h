@@ -30,8 +30,8 @@
 //   - lamplight that the ground reflects to clouds, and the height of clouds over towns of light
 //     pollution (night_light.h);
 //   - clouds in the mirror of water, which shows the clear sky;
-//   - mountains in the way of beams to clouds, and clouds more than kFarthestCloudShade_m away towards a
-//     low sun.
+//   - mountains in the way of beams to clouds, and clouds more than kFarthestCloudShade_m away
+//     towards a low sun.
 #pragma once
 
 #include <cstddef>

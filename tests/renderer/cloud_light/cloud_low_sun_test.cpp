@@ -93,7 +93,7 @@ TEST(CloudLowSun, MeanIsThatOfPathsOverALevelPlane) {
 
 TEST(CloudLowSun, TransmittanceByPathsFollowsTheSameBeam) {
   const CloudField field = tests::SphereClouds(0.004);
-  const CloudLowSun sun(field, LowSunAt(-1.0));
+  const CloudLowSun sun(field, LowSunAt(-1.0), {.farthest_m = 3e5, .full_m = 1e5});
 
   double exact = 0.0, traced = 0.0, square = 0.0;
   constexpr int kPoints = 2000;
@@ -117,6 +117,16 @@ TEST(CloudLowSun, BeamsEndWhereTheyAreToldTo) {
   const glm::dvec3 base(0.0, 0.0, 1000.0);
   EXPECT_EQ(CloudLowSun(field, LowSunAt(-1.0), {.farthest_m = 120e3}).OpticalDepth(base), 0.0);
   EXPECT_GT(CloudLowSun(field, LowSunAt(-1.0)).OpticalDepth(base), 1.0);
+}
+
+// The beam passes the layer from 222 to 243 km, where 0.32 to 0.24 of its extinction are left.
+TEST(CloudLowSun, FarCloudsGetThinnerWithTheDistance) {
+  const CloudField field = tests::PlaneLayer(0.04);
+  const glm::dvec3 base(0.0, 0.0, 1000.0);
+  const double whole = CloudLowSun(field, LowSunAt(-1.0)).OpticalDepth(base);
+  const CloudLowSun thinner(field, LowSunAt(-1.0), {.farthest_m = 300e3, .full_m = 60e3});
+  EXPECT_GT(thinner.OpticalDepth(base), 0.24 * whole);
+  EXPECT_LT(thinner.OpticalDepth(base), 0.33 * whole);
 }
 
 TEST(CloudLowSun, PeriodicDepthsAreThoseOverThePlace) {
@@ -170,6 +180,7 @@ TEST(CloudLowSun, RefusesSunsAndOptionsOutOfRange) {
   EXPECT_THROW(CloudLowSun(field, LowSunAt(1.0), {.planet_radius_m = 1.0}), InputError);
   EXPECT_THROW(CloudLowSun(field, LowSunAt(1.0), {.step_m = std::nan("")}), InputError);
   EXPECT_THROW(CloudLowSun(field, LowSunAt(1.0), {.farthest_m = 5e5}), InputError);
+  EXPECT_THROW(CloudLowSun(field, LowSunAt(1.0), {.full_m = -1.0}), InputError);
   EXPECT_THROW(CloudSunDepths(field, LowSunAt(-5.0)), InputError);
 }
 
