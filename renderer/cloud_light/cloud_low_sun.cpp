@@ -74,21 +74,43 @@ CloudLowSun::Interval CloudLowSun::Below(double altitude_m, double slope) const 
   return {std::max(0.0, std::min(one_m, other_m)), std::max(0.0, std::max(one_m, other_m))};
 }
 
-double CloudLowSun::OpticalDepth(const glm::dvec3& point, double slope, double most_depth) const {
+CloudLowSun::Beam CloudLowSun::BeamFrom(const glm::dvec3& point, double slope) const {
+  const Interval layer = Below(high_m_ - point.z, slope), gap = Below(low_m_ - point.z, slope);
+  const double last_m = std::min(layer.end_m, farthest_m_);
+  if (gap.begin_m >= gap.end_m) return {point, slope, {layer.begin_m, last_m}, {0.0, 0.0}, 0.0};
+  const Interval returned{std::max(gap.end_m, layer.begin_m), last_m};
+  const double left_m = farthest_m_ - returned.begin_m;
+  const double share =
+      returned.begin_m <= full_m_ ? 1.0 : std::max(0.0, left_m / (farthest_m_ - full_m_));
+  return {point, slope, {layer.begin_m, std::min(gap.begin_m, last_m)}, returned, share};
+}
+
+double CloudLowSun::OpticalDepthOf(const Beam& beam, const Interval& part,
+                                   double most_depth) const {
   double depth = 0.0;
-  EachChord(point, slope, [&](const CloudRay& ray, double length_m, double share) {
-    const double away_m = glm::length(ray.origin - point);
+  EachChord(beam, part, [&](const CloudRay& ray, double length_m) {
+    const double away_m = glm::length(ray.origin - beam.from);
     const double most_m = std::clamp(kStepPerDistance * away_m, step_m_, kMostStep * step_m_);
     tracker_.EachSpan(ray, length_m, [&](double begin_m, double end_m, double) {
       const double steps = std::ceil((end_m - begin_m) / most_m);
       const double step_m = (end_m - begin_m) / steps;
       for (double i = 0.0; i < steps && depth < most_depth; ++i) {
-        depth += share * step_m * tracker_.Extinction_per_m(ray.At(begin_m + (i + 0.5) * step_m));
+        depth += step_m * tracker_.Extinction_per_m(ray.At(begin_m + (i + 0.5) * step_m));
       }
       return depth < most_depth;
     });
     return depth < most_depth;
   });
+  return depth;
+}
+
+double CloudLowSun::OpticalDepth(const glm::dvec3& point, double slope, double most_depth) const {
+  const Beam beam = BeamFrom(point, slope);
+  double depth = OpticalDepthOf(beam, beam.first, most_depth);
+  if (depth < most_depth && beam.returning > 0.0) {
+    const double crossing = OpticalDepthOf(beam, beam.returned, most_depth - depth);
+    depth += beam.returning < 1.0 ? -std::log1p(beam.returning * std::expm1(-crossing)) : crossing;
+  }
   return std::min(depth, most_depth);
 }
 

@@ -13,9 +13,11 @@
 // lights them from below: its beams sink out of the layer, and cross it again far away. They are
 // followed up to there in chords of 2 km, which leave the parabola by 0.08 m. Fields repeat in x, y
 // and z of this frame, as if their plane were bent over the planet. A layer that goes on so far would
-// always shade itself from a sun below the horizontal; clouds therefore get thinner from one distance
-// to another, beyond which there are none. A sharp end would draw a line on the layer, from which on
-// the beams of points return into it beyond the end.
+// always shade itself from a sun below the horizontal; from one distance to another a beam that returns
+// therefore meets it with less and less probability. With the transmittance T of the crossing and the
+// share w that is left at the distance where it begins, 1 - w (1 - T) of the light passes. A sharp end
+// would draw a line on the layer, from which on the beams of points return beyond the end; less
+// extinction would too, because a crossing has an optical depth of hundreds.
 //
 // The sun is higher by s / R for points nearer to it. The ground does not end a beam.
 #pragma once
@@ -41,10 +43,10 @@ struct CloudLowSunOptions {
   glm::dvec2 place_m{0.0};           // where the sun has the given direction
   double planet_radius_m = 6.371e6;  // in [1e5, 1e9]; 7/6 of it for rays in refracting air
   double step_m = 20.0;              // in cloud, in [1, 100]; up to four times as long far away
-  /// Distance along the ground beyond which clouds do not shade, in [1e3, 4e5]. Their share of
-  /// extinction falls from one at `full_m` to nothing there.
+  /// Distance along the ground beyond which clouds do not shade, in [1e3, 4e5]. The share of beams
+  /// that meet clouds when they return falls from one at `full_m` to none there.
   double farthest_m = 4e5;
-  double full_m = 4e5;  // >= 0; from farthest_m on, beams end sharply
+  double full_m = 4e5;  // in [0, 4e5]; from farthest_m on, beams end sharply
 };
 
 /// Immutable; safe to use from many threads. The field must outlive it.
@@ -88,10 +90,6 @@ class CloudLowSun {
   [[nodiscard]] double SlopeAt(const glm::dvec3& point) const {
     return std::tan(ElevationAt_rad(point));
   }
-  /// Returns the share of the extinction of clouds at a distance along the ground, up to farthest_m.
-  [[nodiscard]] double ShareAt(double distance_m) const {
-    return distance_m <= full_m_ ? 1.0 : (farthest_m_ - distance_m) / (farthest_m_ - full_m_);
-  }
   [[nodiscard]] double OpticalDepth(const glm::dvec3& point, double slope, double most_depth) const;
   /// A part of a beam.
   struct Interval {
@@ -100,11 +98,22 @@ class CloudLowSun {
   /// Returns where a beam is below an altitude, relative to the point where its slope is given: between
   /// the roots of a parabola that opens upwards.
   [[nodiscard]] Interval Below(double altitude_m, double slope) const;
-  /// Calls visit(ray, length_m, share) for chords of the beam between the altitudes of the field, in
-  /// order, until it returns false; share is that of the extinction at their distance.
-  /// @param slope  of the beam at the point.
+  /// A beam from a point, with its slope there.
+  struct Beam {
+    glm::dvec3 from;
+    double slope;
+    Interval first, returned;  // parts between the altitudes of the field; empty if end <= begin
+    double returning;          // share of beams that meet clouds when they return
+  };
+  [[nodiscard]] Beam BeamFrom(const glm::dvec3& point, double slope) const;
+  /// Calls visit(ray, length_m) for chords of a part of a beam, in order, until it returns false.
   template <typename Visit>
-  void EachChord(const glm::dvec3& point, double slope, const Visit& visit) const;
+  void EachChord(const Beam& beam, const Interval& part, const Visit& visit) const;
+  [[nodiscard]] double OpticalDepthOf(const Beam& beam, const Interval& part,
+                                      double most_depth) const;
+  template <typename Random>
+  [[nodiscard]] double TransmittanceOf(const Beam& beam, const Interval& part,
+                                       Random& random) const;
 
   glm::dvec3 to_sun_;
   CloudTracker tracker_;
@@ -162,38 +171,35 @@ class CloudSunDepths {
 };
 
 template <typename Visit>
-void CloudLowSun::EachChord(const glm::dvec3& point, double slope, const Visit& visit) const {
+void CloudLowSun::EachChord(const Beam& beam, const Interval& part, const Visit& visit) const {
   const auto along = [&](double distance_m) {
-    return glm::dvec3(glm::dvec2(point) + distance_m * azimuth_,
-                      point.z + distance_m * (slope + 0.5 * distance_m * per_radius_));
+    return glm::dvec3(glm::dvec2(beam.from) + distance_m * azimuth_,
+                      beam.from.z + distance_m * (beam.slope + 0.5 * distance_m * per_radius_));
   };
-  const Interval layer = Below(high_m_ - point.z, slope), gap = Below(low_m_ - point.z, slope);
-  const auto follow = [&](double begin_m, double end_m) {
-    for (double at_m = begin_m; at_m < end_m; at_m += kChord_m) {
-      const glm::dvec3 from = along(at_m);
-      const glm::dvec3 way = along(std::min(at_m + kChord_m, end_m)) - from;
-      const double length_m = glm::length(way);
-      if (length_m > 0.0 && !visit(CloudRay{from, way / length_m}, length_m, ShareAt(at_m)))
-        return false;
-    }
-    return true;
-  };
-  const double last_m = std::min(layer.end_m, farthest_m_);
-  if (gap.begin_m >= gap.end_m) {
-    (void)follow(layer.begin_m, last_m);
-  } else if (follow(layer.begin_m, std::min(gap.begin_m, last_m))) {
-    (void)follow(std::max(gap.end_m, layer.begin_m), last_m);
+  for (double at_m = part.begin_m; at_m < part.end_m; at_m += kChord_m) {
+    const glm::dvec3 from = along(at_m);
+    const glm::dvec3 way = along(std::min(at_m + kChord_m, part.end_m)) - from;
+    const double length_m = glm::length(way);
+    if (length_m > 0.0 && !visit(CloudRay{from, way / length_m}, length_m)) return;
   }
 }
 
 template <typename Random>
-double CloudLowSun::Transmittance(const glm::dvec3& point, Random& random) const {
+double CloudLowSun::TransmittanceOf(const Beam& beam, const Interval& part, Random& random) const {
   double left = 1.0;
-  EachChord(point, SlopeAt(point), [&](const CloudRay& ray, double length_m, double share) {
-    left *= tracker_.Transmittance(ray, length_m, random, share);
+  EachChord(beam, part, [&](const CloudRay& ray, double length_m) {
+    left *= tracker_.Transmittance(ray, length_m, random);
     return left > 0.0;
   });
   return left;
+}
+
+template <typename Random>
+double CloudLowSun::Transmittance(const glm::dvec3& point, Random& random) const {
+  const Beam beam = BeamFrom(point, SlopeAt(point));
+  const double left = TransmittanceOf(beam, beam.first, random);
+  if (left == 0.0 || beam.returning == 0.0) return left;
+  return left * (1.0 - beam.returning * (1.0 - TransmittanceOf(beam, beam.returned, random)));
 }
 
 }  // namespace alpenglow::renderer

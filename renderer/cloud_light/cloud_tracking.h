@@ -69,13 +69,11 @@ class CloudTracker {
 
   /// Returns an unbiased estimate of the transmittance up to `farthest_m`. Below kLeastFollowed it
   /// survives with probability 1/2, so that the number of steps through thick clouds is bounded.
-  /// @param of_extinction  a share of the extinction that dims the ray, in [0, 1].
   template <typename Random>
-  [[nodiscard]] double Transmittance(const CloudRay& ray, double farthest_m, Random& random,
-                                     double of_extinction = 1.0) const {
+  [[nodiscard]] double Transmittance(const CloudRay& ray, double farthest_m, Random& random) const {
     double left = 1.0;
     EachTentative(ray, farthest_m, random, [&](double, double share) {
-      left *= 1.0 - of_extinction * share;
+      left *= 1.0 - share;
       if (left >= kLeastFollowed) return true;
       left = random.Next() < 0.5 ? 2.0 * left : 0.0;
       return left > 0.0;

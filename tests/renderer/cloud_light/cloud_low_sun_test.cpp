@@ -119,14 +119,15 @@ TEST(CloudLowSun, BeamsEndWhereTheyAreToldTo) {
   EXPECT_GT(CloudLowSun(field, LowSunAt(-1.0)).OpticalDepth(base), 1.0);
 }
 
-// The beam passes the layer from 222 to 243 km, where 0.32 to 0.24 of its extinction are left.
-TEST(CloudLowSun, FarCloudsGetThinnerWithTheDistance) {
-  const CloudField field = tests::PlaneLayer(0.04);
+// The beam returns after 222.4 km, where (300 - 222.4) / (300 - 60) of the beams meet clouds.
+TEST(CloudLowSun, FewerBeamsMeetCloudsWithTheDistance) {
   const glm::dvec3 base(0.0, 0.0, 1000.0);
-  const double whole = CloudLowSun(field, LowSunAt(-1.0)).OpticalDepth(base);
-  const CloudLowSun thinner(field, LowSunAt(-1.0), {.farthest_m = 300e3, .full_m = 60e3});
-  EXPECT_GT(thinner.OpticalDepth(base), 0.24 * whole);
-  EXPECT_LT(thinner.OpticalDepth(base), 0.33 * whole);
+  for (const double optical_depth : {0.0004, 0.04, 40.0}) {
+    const CloudField field = tests::PlaneLayer(optical_depth);
+    const double whole = std::exp(-CloudLowSun(field, LowSunAt(-1.0)).OpticalDepth(base));
+    const CloudLowSun fewer(field, LowSunAt(-1.0), {.farthest_m = 300e3, .full_m = 60e3});
+    EXPECT_NEAR(1.0 - std::exp(-fewer.OpticalDepth(base)), 0.3233 * (1.0 - whole), 2e-4);
+  }
 }
 
 TEST(CloudLowSun, PeriodicDepthsAreThoseOverThePlace) {
