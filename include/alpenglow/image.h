@@ -16,8 +16,8 @@
 
 namespace ALPENGLOW_EXPORT alpenglow {
 
-/// A plane of values beside the colours of an image, row 0 at the top. Values of "depth.Z" are
-/// distances [m], infinite where a ray meets nothing; all other values are finite.
+/// A plane of values beside the colours of an image, row 0 at the top. Values of "depth.Z" and
+/// "clouds.Z" are distances [m], infinite where a ray meets nothing; all other values are finite.
 struct ImageLayer {
   std::string name;           ///< channel in the EXR file, such as "depth.Z"
   std::vector<float> values;  ///< width * height values

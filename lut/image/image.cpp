@@ -21,7 +21,7 @@ std::string FaultAt(const HdrImage& image, std::size_t pixel, std::string_view o
 }
 
 std::optional<std::string> FaultOf(const HdrImage& image, const ImageLayer& layer) {
-  const bool is_distance = layer.name == kDepthChannel;
+  const bool is_distance = layer.name == kDepthChannel || layer.name == kCloudDistanceChannel;
   const auto fault = std::find_if(layer.values.begin(), layer.values.end(), [&](float value) {
     return is_distance ? !(value >= 0.0F) : !std::isfinite(value);
   });

@@ -29,6 +29,8 @@ inline constexpr int kLargestImageSide = 32768;
 
 /// Name of the channel of distances, which is OpenEXR's depth channel Z in a layer.
 inline constexpr const char* kDepthChannel = "depth.Z";
+/// Name of the channel of the distances of clouds.
+inline constexpr const char* kCloudDistanceChannel = "clouds.Z";
 
 /// Returns a description of the first invalid value (see ImageLayer): "pixel (3, 4) of layer lamps.R
 /// is nan". Returns nullopt if all values are valid.

@@ -111,7 +111,7 @@ const std::vector<LayerKind>& LayerKinds() {
       InColour(kVolumes, "volumes", LightOf<&Shaded::volumes>),
       {kClouds,
        "clouds",
-       {"clouds.R", "clouds.G", "clouds.B", "clouds.T", "clouds.Z"},
+       {"clouds.R", "clouds.G", "clouds.B", "clouds.T", kCloudDistanceChannel},
        nullptr,
        Clouds},
       {kScotopic, "scotopic", {kScotopicChannel}, nullptr, Scotopic},

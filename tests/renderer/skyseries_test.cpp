@@ -316,6 +316,8 @@ TEST_F(Skyseries, CloudsOfTheOptionReplaceThoseOfTheScene) {
   WriteText(folder_ / "cloudy.toml",
             std::string(kBareSceneText) + "[[cloud]]\ngenus = \"cirrus\"\nperiod_m = 2560\n");
   const std::string still = " --size 16x9 --samples 1 --out " + InFolder("still.exr");
+  ASSERT_EQ(Run(InFolder("cloudy.toml") + still + " --aov clouds").status, 0)
+      << "rays to the ground meet no cloud, and their distance is infinite";
   ASSERT_EQ(Run(InFolder("cloudy.toml") + still + " --clouds none").status, 0);
   EXPECT_EQ(Header().count("alpenglow.cloud_0"), 0U);
   EXPECT_THAT(Run(InFolder("s.toml") + still + " --resume").error, HasSubstr("1 kept"))

@@ -91,7 +91,11 @@ TEST_F(ExrFile, NonFinitePixelsAreNotWritten) {
   EXPECT_THAT(fault_of([](HdrImage& image) { image.layers[0].name = "normal.Z"; }),
               HasSubstr("of layer normal.Z is inf"))
       << "only distances are infinite where there is nothing";
+  EXPECT_THAT(fault_of([](HdrImage& image) { image.layers[0].name = "clouds.T"; }),
+              HasSubstr("of layer clouds.T is inf"));
   EXPECT_EQ(FileCount(), 0U) << "nothing is left, under no name";
+  EXPECT_EQ(fault_of([](HdrImage& image) { image.layers[0].name = "clouds.Z"; }), "no fault")
+      << "rays past all clouds";
   const std::string of_ceiling = fault_of([](HdrImage& image) {
     image.layers[0].name = "normal.Z";
     for (float& value : image.layers[0].values) value = -0.5F;
