@@ -104,6 +104,19 @@ Spectrum LampsOnClouds(const CloudsOnRay& clouds, const LampLight& lamps,
   return sum;
 }
 
+Spectrum NightAlong(const CloudsOnRay& clouds, const NightScattered& night, const Spectrum& whole,
+                    const std::function<Spectrum(double)>& left) {
+  Spectrum sum = night.all + -1.0F * (whole * night.all);
+  float past = 1.0F;
+  for (const CloudScreen& screen : clouds.screens) {
+    // Ground of the radiance 2 J takes the place of J in what the screen hides.
+    const float in_excess = 2.0F * screen.ground - (1.0F - screen.transmittance);
+    sum = sum + past * in_excess * (left(screen.distance_m) * night.towns);
+    past *= screen.transmittance;
+  }
+  return sum;
+}
+
 LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
                      const SolvedAir& air, const DistantLight& light, CloudLightMethod method)
     : clouds_(std::move(clouds)), geometry_(geometry), air_(air), light_(light) {

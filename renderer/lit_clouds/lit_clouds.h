@@ -27,8 +27,8 @@
 // Not modelled:
 //
 //   - skylight and light from the ground that differ with direction or place under a field;
-//   - lamplight that the ground reflects to clouds, and the height of clouds over towns of light
-//     pollution (night_light.h);
+//   - lamplight that the ground reflects to clouds, and the air between clouds and towns of light
+//     pollution (NightAlong);
 //   - clouds in the mirror of water, which shows the clear sky;
 //   - mountains in the way of beams to clouds, and clouds more than kFarthestCloudShade_m away
 //     towards a low sun.
@@ -113,6 +113,20 @@ Spectrum CloudsOnRay::Dimmed(const Spectrum& whole, const Upto& upto) const {
                                      const SceneGeometry& geometry, const glm::dvec3& origin,
                                      const glm::dvec3& direction,
                                      const std::function<Spectrum(double)>& left);
+
+/// Radiance J of an infinitely long path at night (night_light.h) [W m^-2 sr^-1 nm^-1].
+struct NightScattered {
+  Spectrum all;
+  Spectrum towns;  // the part of light pollution: ground around has twice this radiance
+};
+
+/// Returns the light of the night that air, media and clouds along a ray scatter to its origin
+/// [W m^-2 sr^-1 nm^-1]: (1 - T) J without clouds. Clouds, too, send J instead of what they hide, but
+/// for the light of towns, which they have from below.
+/// @param whole  transmittance of air, media and clouds. @param left  as in LampsOnClouds().
+[[nodiscard]] Spectrum NightAlong(const CloudsOnRay& clouds, const NightScattered& night,
+                                  const Spectrum& whole,
+                                  const std::function<Spectrum(double)>& left);
 
 /// Immutable; safe to use from many threads. Refers to geometry and air.
 class LitClouds {

@@ -110,14 +110,9 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   const NightLight* night = frame.sky_lights().night.get();
   Shaded shaded;
   shaded.inscatter =
-      through.layers_left * (frame_->light().source.irradiance * through.air.inscatter);
+      through.layers_left * (frame_->light().source.irradiance * through.air.inscatter) +
+      through.night;
   shaded.transmittance = through.layers_left * through.air.transmittance;
-  const bool has_air = frame.Has(hit.kind == HitKind::kSky ? Effect::kSky : Effect::kAerial);
-  if (night && has_air) {
-    const Spectrum& scattered = night->scattered();
-    for (std::size_t band = 0; band < scattered.size(); ++band)
-      shaded.inscatter[band] += (1.0F - shaded.transmittance[band]) * scattered[band];
-  }
   shaded.albedo = Spectrum(frame.scene().medium().wavelengths_nm.size());
   const auto left = [&](double distance_m) {
     return through.clouds.TransmittanceTo(distance_m) *

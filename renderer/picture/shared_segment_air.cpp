@@ -271,19 +271,35 @@ void AddSource(const FrameContext& frame, const FrameLight& source, bool is_firs
   if (lit.polarised) rays.air.polarised = *rays.air.polarised + source.by_sun * *lit.polarised;
 }
 
+/// Returns the transmittance of air and media up to a distance.
+Spectrum LeftByAir(const FrameContext& frame, const AirRay& through, const SharedSegmentAir& rays,
+                   double distance_m) {
+  ViewRay ray{frame.scene().geometry().AltitudeOf(frame.camera().eye()),
+              std::clamp(glm::dot(through.direction, frame.limb().up()), -1.0, 1.0), 1.0, 0.0};
+  ray.length_m = distance_m;
+  return LeftByMedia(rays.pieces, distance_m, rays.media.size()) *
+         frame.over_ground().air.single_scattering().TransmittanceAlong(ray);
+}
+
 /// Returns the light of lamps that clouds scatter to the eye [W m^-2 sr^-1 nm^-1].
 Spectrum CloudsByLamps(const FrameContext& frame, const AirRay& through,
                        const SharedSegmentAir& rays) {
-  const SceneGeometry& geometry = frame.scene().geometry();
-  const glm::dvec3& eye = frame.camera().eye();
-  const auto left = [&](double distance_m) {
-    ViewRay ray{geometry.AltitudeOf(eye),
-                std::clamp(glm::dot(through.direction, frame.limb().up()), -1.0, 1.0), 1.0, 0.0};
-    ray.length_m = distance_m;
-    return LeftByMedia(rays.pieces, distance_m, rays.media.size()) *
-           frame.over_ground().air.single_scattering().TransmittanceAlong(ray);
-  };
-  return LampsOnClouds(rays.clouds, frame.lamps(), geometry, eye, through.direction, left);
+  return LampsOnClouds(
+      rays.clouds, frame.lamps(), frame.scene().geometry(), frame.camera().eye(), through.direction,
+      [&](double distance_m) { return LeftByAir(frame, through, rays, distance_m); });
+}
+
+/// Returns the light of the night that air and clouds scatter to the eye [W m^-2 sr^-1 nm^-1].
+Spectrum NightOf(const FrameContext& frame, const AirRay& through, const SharedSegmentAir& rays) {
+  const Spectrum none(rays.media.size());
+  const NightLight* night = frame.sky_lights().night.get();
+  const bool has_air = frame.Has(rays.kind == HitKind::kSky ? Effect::kSky : Effect::kAerial);
+  if (night == nullptr || !has_air) return none;
+  const NightScattered light{night->scattered(), frame.scene().towns().value_or(none)};
+  const auto left = [&](double distance_m) { return LeftByAir(frame, through, rays, distance_m); };
+  const Spectrum behind = NightAlong(rays.clouds, light, rays.air.transmittance, left);
+  // Layers that only lamps light lie before the clouds.
+  return light.all + rays.layers_left * (behind + -1.0F * light.all);
 }
 
 }  // namespace
@@ -363,6 +379,7 @@ void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
   const AirRay through = AirRayOf(frame, rays);
   rays.layers_left = UnmarchedLayers(frame, through.direction, through.length_m);
   rays.lamp_light = Spectrum(rays.media.size());
+  rays.night = NightOf(frame, through, rays);
   if (frame.plan().tiles.empty()) return;
   if (frame.Has(Effect::kCloudGlow)) rays.lamp_light = CloudsByLamps(frame, through, rays);
   if (!frame.Has(Effect::kBeams)) return;

@@ -33,6 +33,7 @@ struct SharedSegmentAir {
   /// Transmittance of the layers that only lamps light; `air` includes that of other media.
   Spectrum layers_left{};
   Spectrum lamp_light{};  // airlight of lamps, W m^-2 sr^-1 nm^-1
+  Spectrum night{};       // light of the night sky and towns in air and clouds, in the same unit
   Spectrum media{};       // light of sun and sky scattered by media, W m^-2 sr^-1 nm^-1
   std::vector<MarchedPiece> pieces{};  // pieces of media along the ray
   Spectrum cloud_light{};              // light of clouds, W m^-2 sr^-1 nm^-1
@@ -70,8 +71,8 @@ void AddAir(const FrameContext& frame, SharedSegmentAir& rays);
 [[nodiscard]] Spectrum UnmarchedLayers(const FrameContext& frame, const glm::dvec3& direction,
                                        double length_m);
 
-/// Computes the airlight of lamps for pixel (x, y), and the transmittance of layers that only lamps
-/// light. Call after AddAir.
+/// Computes the light of lamps and of the night in air and clouds for pixel (x, y), and the
+/// transmittance of layers that only lamps light. Call after AddAir.
 void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays);
 
 }  // namespace alpenglow::renderer

@@ -270,6 +270,28 @@ TEST(LitClouds, LampsLightCloudsByTheInverseSquare) {
   EXPECT_EQ(site.Luminance(dark), 0.0);
 }
 
+Spectrum EvenSpectrum(float value) {
+  Spectrum even(3);
+  std::ranges::fill(even.values(), value);
+  return even;
+}
+
+// Half of the light of the night is that of towns; the screens leave 0.3 of what is behind.
+TEST(LitClouds, TownsLightCloudsFromBelow) {
+  const NightScattered night{EvenSpectrum(2.0F), EvenSpectrum(1.0F)};
+  CloudsOnRay clouds;
+  const auto seen = [&](float air, float whole) {
+    return NightAlong(clouds, night, EvenSpectrum(whole),
+                      [&](double) { return EvenSpectrum(air); })[0];
+  };
+  EXPECT_FLOAT_EQ(seen(0.8F, 0.75F), 0.25F * 2.0F) << "without clouds the air alone has light";
+  clouds.screens = {{400.0, 0.5F, Spectrum(3), 0.25F}, {1000.0, 0.6F, Spectrum(3), 0.2F}};
+  EXPECT_FLOAT_EQ(seen(1.0F, 0.3F), 0.7F * 2.0F) << "clouds that send J for what they hide";
+  clouds.screens.front().ground = 0.4F;
+  EXPECT_FLOAT_EQ(seen(1.0F, 0.3F), 0.7F * 2.0F + 2.0F * 0.15F) << "ground of the radiance 2";
+  EXPECT_FLOAT_EQ(seen(0.0F, 0.0F), 2.0F) << "clouds behind dense air are not seen";
+}
+
 // Lamps of a town of 2 km, seen from 4 km above its edge.
 TEST(LitClouds, FarLampsAreAsBrightAsAll) {
   Scene scene = tests::NightScene();
