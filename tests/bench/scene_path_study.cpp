@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Compares pictures of the fast method with paths through the whole scene
 // (renderer/path_tracing/scene_path_tracer.h), over a plain:
-//   scene_path_study [CLOUDS [SUN_DEG [PATHS [AIR]]]]
-// with the text of --clouds, and AIR 0 for a planet without air. Views look from the ground to both
-// sides of the sun, and down from 4 km.
+//   scene_path_study [CLOUDS [SUN_DEG [PATHS [KEY=VALUE ...]]]]
+// with the text of --clouds. Keys are
+//   air     earth, molecules (without haze) or none
+//   views   usual: from the ground to both sides of the sun, and down from 4 km
+//           ground: down from 2 m, 4 km and 12 km
+//   seed    of the first layer
+//   albedo  of the ground, for example 0
+//   clouds  the method of light in clouds: fast, hybrid or traced
 // Pixels are single rays. Groups are the sky beside clouds, clouds that dim by half or more, the ground
 // in their shadow, and the ground in the sun. Errors are root mean square and bias of luminance
 // relative to the traced pixel, in per cent; the standard errors of the paths are subtracted from the
@@ -14,9 +19,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <ctime>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,33 +45,50 @@ struct StudyView {
   const char* name;
   double height_m, from_sun_deg, pitch_deg;
 };
-constexpr StudyView kViews[] = {{"towards the sun", 2.0, 50.0, 22.0},
-                                {"away from the sun", 2.0, 180.0, 22.0},
-                                {"down from 4 km", 4000.0, 120.0, -40.0}};
-
-/// The air of the earth's preset, or none.
-Medium AirOf(bool has_air) {
-  Medium medium = MediumPreset("earth");
-  if (has_air) return medium;
-  for (auto* values : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
-                       &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
-    std::ranges::fill(*values, 0.0);
-  return medium;
-}
+const std::vector<StudyView> kUsualViews{{"towards the sun", 2.0, 50.0, 22.0},
+                                         {"away from the sun", 2.0, 180.0, 22.0},
+                                         {"down from 4 km", 4000.0, 120.0, -40.0}};
+const std::vector<StudyView> kGroundViews{{"down from 2 m", 2.0, 120.0, -40.0},
+                                          {"down from 4 km", 4000.0, 120.0, -40.0},
+                                          {"down from 4 km, towards the sun", 4000.0, 0.0, -40.0},
+                                          {"down from 12 km", 12000.0, 120.0, -50.0}};
 
 struct StudySky {
   std::string clouds = "cumulus 0.25";
   double sun_deg = 35.0;
   int paths = 512;
-  bool has_air = true;
+  std::string air = "earth";
+  bool is_of_ground = false;
+  CloudLightMethod method = CloudLightMethod::kFast;
+  std::optional<std::uint32_t> seed = {};
+  std::optional<double> ground_albedo = {};
+
+  [[nodiscard]] bool HasAir() const { return air != "none"; }
+  [[nodiscard]] const std::vector<StudyView>& Views() const {
+    return is_of_ground ? kGroundViews : kUsualViews;
+  }
 };
+
+Medium MediumOf(const StudySky& sky) {
+  Medium medium = MediumPreset("earth");
+  std::vector<std::vector<double>*> none;
+  if (sky.air != "earth") none = {&medium.mie_scattering_per_m, &medium.mie_extinction_per_m};
+  if (!sky.HasAir()) {
+    none.push_back(&medium.rayleigh_scattering_per_m);
+    none.push_back(&medium.ozone_absorption_per_m);
+  }
+  for (auto* values : none) std::ranges::fill(*values, 0.0);
+  if (sky.ground_albedo) std::ranges::fill(medium.ground_albedo, *sky.ground_albedo);
+  return medium;
+}
 
 Scene SceneUnder(const StudySky& sky, const StudyView& view, double sun_azimuth_deg) {
   Scene scene;
   scene.place = {46.5, 8.0, 0.0};
-  scene.medium = AirOf(sky.has_air);
+  scene.medium = MediumOf(sky);
   scene.terrain.kind = TerrainSource::Kind::kNone;
   scene.clouds = CloudsFromText(sky.clouds);
+  if (sky.seed && !scene.clouds.empty()) scene.clouds.front().options.seed = *sky.seed;
   double heading_deg = sun_azimuth_deg + view.from_sun_deg;
   heading_deg -= 360.0 * std::floor(heading_deg / 360.0);
   scene.camera = CameraFromDegrees({view.height_m, false}, heading_deg, view.pitch_deg, 0.0, 70.0);
@@ -78,7 +102,7 @@ struct StudyTime {
 };
 
 StudyTime MorningWith(double elevation_deg) {
-  const SceneRenderer renderer(SceneUnder({.clouds = "none"}, kViews[0], 0.0));
+  const SceneRenderer renderer(SceneUnder({.clouds = "none"}, kUsualViews.front(), 0.0));
   const UtcTime midnight = ParseInstant("2026-06-21T03:00:00Z");
   for (double second = 0.0; second < 32400.0; second += 10.0) {
     const UtcTime time = AddSeconds(midnight, second);
@@ -146,6 +170,7 @@ void Compare(const StudyView& view, const StudyTime& when, const StudySky& sky,
   settings.width = kWide;
   settings.height = kHigh;
   settings.samples_per_pixel = 1;
+  settings.cloud_light = sky.method;
   RenderSettings with_paths = settings;
   with_paths.paths = sky.paths;
   const FrameContext traced_frame(scene, when.time, with_paths);
@@ -165,7 +190,7 @@ void Compare(const StudyView& view, const StudyTime& when, const StudySky& sky,
   std::map<std::string, StudyGroup> groups;
   for (int i = 0; i < kWide * kHigh; ++i) {
     const std::string group = GroupOf(fast_frame, fast_shader, i % kWide + 0.5, i / kWide + 0.5);
-    if (group.empty() || (group == "sky" && !sky.has_air)) continue;
+    if (group.empty() || (group == "sky" && !sky.HasAir())) continue;
     groups[group].Add(scene.colour(), pixels[static_cast<std::size_t>(i)]);
     all[group].Add(scene.colour(), pixels[static_cast<std::size_t>(i)]);
   }
@@ -176,12 +201,12 @@ void Compare(const StudyView& view, const StudyTime& when, const StudySky& sky,
 
 void RunStudy(const StudySky& sky) {
   const StudyTime when = MorningWith(sky.sun_deg);
-  fmt::print("{}, sun {} degrees high, {} paths per pixel, {} air\n", sky.clouds, sky.sun_deg,
-             sky.paths, sky.has_air ? "with" : "without");
+  fmt::print("{}, sun {} degrees high, {} paths per pixel, air: {}, {} clouds\n", sky.clouds,
+             sky.sun_deg, sky.paths, sky.air, NameOf(sky.method));
   fmt::print("{:46} {:>6} {:>7} {:>7}   {:>6} {:>6} {:>6}   {:>6}\n", "view: group", "pixels",
              "rms", "bias", "red", "green", "blue", "noise");
   std::map<std::string, StudyGroup> all;
-  for (const StudyView& view : kViews) Compare(view, when, sky, all);
+  for (const StudyView& view : sky.Views()) Compare(view, when, sky, all);
   for (const auto& [name, group] : all) fmt::print("{}", group.Line("all views: " + name));
 }
 
@@ -189,14 +214,25 @@ void RunStudy(const StudySky& sky) {
 }  // namespace alpenglow::renderer
 
 int main(int count, char** arguments) {
-  using alpenglow::atmosphere::ParseNumber;
-  alpenglow::renderer::StudySky sky;
-  const auto number = [&](int i, double otherwise) {
-    return i < count ? ParseNumber(arguments[i]).value_or(otherwise) : otherwise;
+  using namespace alpenglow;
+  const std::vector<std::string> words(arguments + 1, arguments + count);
+  renderer::StudySky sky;
+  const auto number = [](const std::string& text) {
+    const auto value = atmosphere::ParseNumber(text);
+    if (!value) throw InputError(fmt::format("\"{}\" is not a number", text));
+    return *value;
   };
-  if (count > 1) sky.clouds = arguments[1];
-  sky.sun_deg = number(2, sky.sun_deg);
-  sky.paths = static_cast<int>(number(3, sky.paths));
-  sky.has_air = number(4, 1.0) != 0.0;
-  alpenglow::renderer::RunStudy(sky);
+  if (!words.empty()) sky.clouds = words[0];
+  if (words.size() > 1) sky.sun_deg = number(words[1]);
+  if (words.size() > 2) sky.paths = static_cast<int>(number(words[2]));
+  for (std::size_t i = 3; i < words.size(); ++i) {
+    const std::size_t equals = words[i].find('=');
+    const std::string key = words[i].substr(0, equals), value = words[i].substr(equals + 1);
+    if (key == "air") sky.air = value;
+    if (key == "views") sky.is_of_ground = value == "ground";
+    if (key == "seed") sky.seed = static_cast<std::uint32_t>(number(value));
+    if (key == "albedo") sky.ground_albedo = number(value);
+    if (key == "clouds") sky.method = renderer::CloudLightMethodFromName(value);
+  }
+  renderer::RunStudy(sky);
 }
