@@ -20,6 +20,7 @@
 #include "atmosphere/reference/column_table.h"
 #include "atmosphere/reference/path_analyser.h"
 #include "atmosphere/reference/path_sampling.h"
+#include "atmosphere/reference/sun_lobe.h"
 
 namespace alpenglow::atmosphere::reference {
 namespace {
@@ -31,8 +32,6 @@ constexpr int kLaterStrata = 4;  // strata of each map along later segments
 // Among other bodies a point costs a ray to the sun through them, and a path costs more than the
 // points of its first segments.
 constexpr int kFirstStrataAmongBodies = 3, kLaterStrataAmongBodies = 2;
-// Probability that a vertex among clouds has a side path.
-constexpr double kSidePaths = 0.2;
 // Segments among bodies of a smaller optical depth of air have one point, or none at random.
 constexpr double kThinAir = 0.02;
 // If the expected contribution of the next segment is below kRouletteShare times that of the first
@@ -340,40 +339,6 @@ struct Turned {
   Vector reference{};
 };
 
-/// Directions around the sun in which clouds are bright: after one scattering by their phase function,
-/// and after several.
-class SunLobe {
- public:
-  SunLobe(const PhaseFunction& cloud, const Vector& sun) : cloud_(cloud), sun_(sun) {}
-
-  /// Returns the density of the phase function of clouds around the sun.
-  [[nodiscard]] double Peak(const Vector& direction) const {
-    return Phase(cloud_, glm::dot(direction, sun_));
-  }
-  [[nodiscard]] Vector SampleOfPeak(PathRandom& random) const {
-    return Around(cloud_, random.Next(), random);
-  }
-  /// Returns the density of the mean of the phase function and a wide lobe.
-  [[nodiscard]] double Mean(const Vector& direction) const {
-    return 0.5 * (Peak(direction) + Phase(kWide, glm::dot(direction, sun_)));
-  }
-  [[nodiscard]] Vector SampleOfMean(PathRandom& random) const {
-    const double u = 2.0 * random.Next();
-    return u < 1.0 ? Around(cloud_, u, random) : Around(kWide, u - 1.0, random);
-  }
-
- private:
-  static constexpr double kWideG = 0.9;
-  static inline const PhaseFunction kWide{.kind = PhaseKind::kHenyeyGreenstein, .g = kWideG};
-
-  [[nodiscard]] Vector Around(const PhaseFunction& phase, double u, PathRandom& random) const {
-    return FrameAround(sun_).Direction(SampleCosine(phase, u), 2.0 * kPi * random.Next());
-  }
-
-  const PhaseFunction& cloud_;
-  Vector sun_;
-};
-
 /// Follows paths, one at a time.
 class Tracer {
  public:
@@ -450,6 +415,9 @@ class Tracer {
   template <typename Turn>
   void AddSideRay(const Vector& from, const Turn& turn, const SunLobe& lobe, PathRandom& random,
                   std::vector<double>& light) const;
+  [[nodiscard]] Vector AroundSun(double to_sun, PathRandom& random) const {
+    return FrameAround(scene_.sun()).Direction(to_sun, 2.0 * kPi * random.Next());
+  }
   /// Goes on in a direction. @param lobe  null: no clouds.
   void Take(const Turned& turned, const Vector& direction, const SunLobe* lobe);
   [[nodiscard]] Branch FirstBranch(const Piece& first, double factor) const;
@@ -728,8 +696,7 @@ double Tracer::AureoleAlong(const Piece& piece) const {
   const std::vector<double> phase = MiePhaseValues(scene_.medium(), nu);
   double most = *std::max_element(phase.begin(), phase.end());
   const auto* cloud = end_ ? std::get_if<PathScatterer>(&end_->body) : nullptr;
-  if (cloud != nullptr && end_sees_sun_)
-    most = std::max(most, SunLobe(*cloud->phase, scene_.sun()).Mean(piece.direction));
+  if (cloud != nullptr && end_sees_sun_) most = std::max(most, SunLobe(*cloud->phase).Mean(nu));
   return std::max(4.0 * kPi * most, 1.0);
 }
 
@@ -1048,7 +1015,7 @@ Piece Tracer::GoOn(const Vector& from, const Turn& turn, const PhaseFunction* lo
                    std::vector<double>& light) {
   std::optional<SunLobe> around_sun;
   if (lobe != nullptr) {
-    around_sun.emplace(*lobe, scene_.sun());
+    around_sun.emplace(*lobe);
     AddSideRay(from, turn, *around_sun, random, light);
     if (random.Next() < kSidePaths) AddSidePath(from, turn, *around_sun, random);
   }
@@ -1060,7 +1027,8 @@ Piece Tracer::GoOn(const Vector& from, const Turn& turn, const PhaseFunction* lo
 template <typename Turn>
 void Tracer::AddSidePath(const Vector& from, const Turn& turn, const SunLobe& lobe,
                          PathRandom& random) {
-  const Vector direction = lobe.SampleOfMean(random);
+  const double to_sun = lobe.DrawnFromMean(random.Next());
+  const Vector direction = AroundSun(to_sun, random);
   const Turned turned = turn.At(direction);
   if (!(turned.density > 0.0)) return;
   const std::vector<double> weight = weight_;
@@ -1076,11 +1044,11 @@ void Tracer::AddSidePath(const Vector& from, const Turn& turn, const SunLobe& lo
 
 // A path, its side path and its side ray share what lies in a direction by the balance heuristic.
 void Tracer::Take(const Turned& turned, const Vector& direction, const SunLobe* lobe) {
-  const double side = lobe != nullptr ? kSidePaths * lobe->Mean(direction) : 0.0;
-  const double density = turned.density + side;
+  const double to_sun = glm::dot(direction, scene_.sun());
+  const double density = turned.density + (lobe != nullptr ? lobe->OfSidePaths(to_sun) : 0.0);
   for (std::size_t band = 0; band < weight_.size(); ++band)
     weight_[band] *= turned.density > 0.0 ? turned.value[band] / density : 0.0;
-  sun_share_ = lobe != nullptr && density > 0.0 ? density / (density + lobe->Peak(direction)) : 1.0;
+  sun_share_ = lobe != nullptr && density > 0.0 ? density / (density + lobe->Peak(to_sun)) : 1.0;
   if (polarised_ == nullptr) return;
   if (!turned.analyser.empty()) {
     analyser_ = turned.analyser;
@@ -1097,7 +1065,8 @@ void Tracer::Take(const Turned& turned, const Vector& direction, const SunLobe* 
 template <typename Turn>
 void Tracer::AddSideRay(const Vector& from, const Turn& turn, const SunLobe& lobe,
                         PathRandom& random, std::vector<double>& light) const {
-  const Vector direction = lobe.SampleOfPeak(random);
+  const double to_sun = lobe.DrawnFromPeak(random.Next());
+  const Vector direction = AroundSun(to_sun, random);
   const Piece side = scene_.PieceFrom(from, direction);
   const std::optional<PathMeeting> meeting = MeetingOn(side, random);
   const auto* cloud = meeting ? std::get_if<PathScatterer>(&meeting->body) : nullptr;
@@ -1108,9 +1077,8 @@ void Tracer::AddSideRay(const Vector& from, const Turn& turn, const SunLobe& lob
   const double visible = SunTransmittance(point, random);
   if (visible == 0.0) return;
   const Turned turned = turn.At(direction);
-  const double density = turned.density + kSidePaths * lobe.Mean(direction) + lobe.Peak(direction);
-  const double sent =
-      cloud->albedo * Phase(*cloud->phase, glm::dot(direction, scene_.sun())) * visible / density;
+  const double density = turned.density + lobe.OfSidePaths(to_sun) + lobe.Peak(to_sun);
+  const double sent = cloud->albedo * Phase(*cloud->phase, to_sun) * visible / density;
   const AirColumns view = scene_.ColumnsAlong(side, meeting->distance_m);
   const AirColumns sun = scene_.ColumnsToSun(radius, towards_sun);
   const std::size_t bands = weight_.size();

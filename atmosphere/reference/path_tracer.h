@@ -12,16 +12,7 @@
 // by Russian roulette.
 //
 // Clouds and mountains among the air (path_surroundings.h) end segments: a cloud where a free flight
-// through it collides. Droplets scatter most light forwards, so that few paths turn near the sun,
-// where clouds are bright. With the density a(d) of the next direction d of a path, the phase function
-// b of clouds around the sun, and the mean c of b and of a wide lobe around the sun, each vertex has
-//
-//   the path                                 weight f / (a + q c)
-//   with probability q, a side path from c   weight f / (a + q c)
-//   a side ray from b to the first cloud     weight f / (a + q c + b), of that cloud's sunlight
-//
-// where f(d) is the light scattered into the path, and path and side path take the share
-// (a + q c) / (a + q c + b) of the sunlight of a cloud that they meet next (balance heuristic).
+// through it collides. Vertices then have side paths and side rays around the sun (sun_lobe.h).
 //
 // The estimate is unbiased except for the tables of columns (1e-6, column_table.h). The shared
 // sources, the closed forms and the tables of lut/ are not used, except for the values of phase

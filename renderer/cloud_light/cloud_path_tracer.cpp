@@ -18,11 +18,17 @@ namespace alpenglow::renderer {
 namespace {
 
 using atmosphere::reference::kPathsPerBatch;
+using atmosphere::reference::kSidePaths;
+using atmosphere::reference::SunLobe;
 using PathRandom = CloudPathTracer::PathRandom;
 
 constexpr double kUnbounded_m = std::numeric_limits<double>::infinity();
-// Paths with less weight than this survive with probability 1/2.
+// Photons with less weight than this survive with probability 1/2.
 constexpr double kLeastWeight = 0.25;
+// Paths that are worth less than this, in light of a mean direction, survive by their worth.
+constexpr double kLeastWorth = 0.25;
+// Radius of the droplets whose phase function the lobe around the sun has at the ground.
+constexpr double kTypicalRadius_um = 10.0;
 // Fluxes have this number of groups of batches, whose scatter is their standard error. A wave of
 // groups is traced at once; its size bounds the memory.
 constexpr std::size_t kFluxGroups = 32, kWave = 8;
@@ -34,7 +40,7 @@ glm::dvec3 LambertianDirection(double up, PathRandom& random) {
   return TurnedFrom({0.0, 0.0, up}, cosine, 2.0 * kPi * random.Next());
 }
 
-/// Returns the weight of a path after Russian roulette; 0 if the path ends.
+/// Returns the weight of a photon after Russian roulette; 0 if it ends.
 double WeightAfterRoulette(double weight, PathRandom& random) {
   if (weight >= kLeastWeight || weight == 0.0) return weight;
   return random.Next() < 0.5 ? 2.0 * weight : 0.0;
@@ -67,13 +73,32 @@ std::size_t BatchesOf(const CloudPathOptions& options) {
 
 }  // namespace
 
-/// A path from the eye and what it has collected.
+/// A path from the eye, its segments that are not followed yet, and what it has collected.
 struct CloudPathTracer::Walker {
-  CloudRay ray;
+  struct Branch {
+    CloudRay ray;
+    double weight = 1.0;
+    double share = 1.0;  // weight of the sun's light at the next collision: see the header
+    int order = 0;       // events so far
+  };
+  Branch at;
+  std::vector<Branch> segments{};
   CloudPathLight light{};
-  double weight = 1.0;
-  double share = 1.0;  // weight of the sun's light at the next collision: see the header
-  int order = 0;       // events so far
+};
+
+/// Light that is scattered or reflected into the path, by the direction from which it comes.
+struct CloudPathTracer::Turn {
+  const PhaseFunction* phase;  // null: level Lambertian ground
+  glm::dvec3 before;           // direction of the path
+
+  /// Returns the density with which directions are drawn, which is the light per light that arrives.
+  [[nodiscard]] double Density(const glm::dvec3& after) const {
+    return phase != nullptr ? Phase(*phase, glm::dot(before, after)) : std::max(after.z, 0.0) / kPi;
+  }
+  [[nodiscard]] glm::dvec3 Drawn(PathRandom& random) const {
+    return phase != nullptr ? ScatteredFrom(before, *phase, random)
+                            : LambertianDirection(1.0, random);
+  }
 };
 
 CloudPathTracer::CloudPathTracer(const CloudField& field, CloudScatterers scatterers,
@@ -105,57 +130,79 @@ double CloudPathTracer::SunTransmittance(const glm::dvec3& point, PathRandom& ra
   return tracker_.Transmittance({point, surroundings_.to_sun}, kUnbounded_m, random);
 }
 
-double CloudPathTracer::SideRay(const Walker& walker, const PhaseFunction& phase,
+glm::dvec3 CloudPathTracer::AroundSun(double to_sun, PathRandom& random) const {
+  return TurnedFrom(surroundings_.to_sun, to_sun, 2.0 * kPi * random.Next());
+}
+
+double CloudPathTracer::SideRay(const glm::dvec3& from, const Turn& turn, const SunLobe& lobe,
                                 PathRandom& random) const {
-  CloudRay side{walker.ray.origin, ScatteredFrom(surroundings_.to_sun, phase, random)};
+  const double to_sun = lobe.DrawnFromPeak(random.Next());
+  CloudRay side{from, AroundSun(to_sun, random)};
+  const double main = turn.Density(side.direction);
+  if (main == 0.0) return 0.0;
   const std::optional<double> distance_m = tracker_.Collision(side, GroundDistance_m(side), random);
   if (!distance_m) return 0.0;
   side.origin = side.At(*distance_m);
-  const double to_sun = glm::dot(side.direction, surroundings_.to_sun);
-  const double main = Phase(phase, glm::dot(walker.ray.direction, side.direction));
   return albedo_ * Phase(PhaseAt(side.origin, random), to_sun) *
-         SunTransmittance(side.origin, random) * main / (main + Phase(phase, to_sun));
+         SunTransmittance(side.origin, random) * main /
+         (main + lobe.OfSidePaths(to_sun) + lobe.Peak(to_sun));
+}
+
+void CloudPathTracer::GoOn(Walker& walker, const Turn& turn, const SunLobe& lobe,
+                           PathRandom& random) const {
+  const glm::dvec3 from = walker.at.ray.origin;
+  walker.light.sun += walker.at.weight * SideRay(from, turn, lobe, random);
+  const auto add = [&](const glm::dvec3& direction) {
+    const double to_sun = glm::dot(direction, surroundings_.to_sun);
+    const double main = turn.Density(direction), all = main + lobe.OfSidePaths(to_sun);
+    double weight = walker.at.weight * main / all;
+    // Clouds are brighter around the sun: paths there are worth more than their weight.
+    const double worth = weight * std::max(4.0 * kPi * lobe.Mean(to_sun), 1.0);
+    if (worth < kLeastWorth) {
+      if (random.Next() * kLeastWorth >= worth) return;
+      weight *= kLeastWorth / worth;
+    }
+    walker.segments.push_back(
+        {{from, direction}, weight, all / (all + lobe.Peak(to_sun)), walker.at.order});
+  };
+  if (random.Next() < kSidePaths) add(AroundSun(lobe.DrawnFromMean(random.Next()), random));
+  add(turn.Drawn(random));
 }
 
 void CloudPathTracer::Collide(Walker& walker, PathRandom& random, int max_order) const {
-  const PhaseFunction& phase = PhaseAt(walker.ray.origin, random);
-  walker.weight *= albedo_;
-  walker.light.sun += walker.weight * walker.share *
-                      Phase(phase, glm::dot(walker.ray.direction, surroundings_.to_sun)) *
-                      SunTransmittance(walker.ray.origin, random);
-  if (++walker.order >= max_order) return;
-  walker.light.sun += walker.weight * SideRay(walker, phase, random);
-  const glm::dvec3 next = ScatteredFrom(walker.ray.direction, phase, random);
-  const double main = Phase(phase, glm::dot(walker.ray.direction, next));
-  walker.share = main / (main + Phase(phase, glm::dot(next, surroundings_.to_sun)));
-  walker.ray.direction = next;
+  const PhaseFunction& phase = PhaseAt(walker.at.ray.origin, random);
+  walker.at.weight *= albedo_;
+  walker.light.sun += walker.at.weight * walker.at.share *
+                      Phase(phase, glm::dot(walker.at.ray.direction, surroundings_.to_sun)) *
+                      SunTransmittance(walker.at.ray.origin, random);
+  if (++walker.at.order >= max_order) return;
+  GoOn(walker, {&phase, walker.at.ray.direction}, SunLobe(phase), random);
 }
 
-void CloudPathTracer::Reflect(Walker& walker, PathRandom& random) const {
-  walker.light.ground += walker.weight;
-  walker.weight *= surroundings_.ground_albedo;
-  ++walker.order;
-  walker.share = 1.0;
-  if (walker.weight == 0.0) return;
+void CloudPathTracer::Reflect(Walker& walker, PathRandom& random, int max_order) const {
+  walker.light.ground += walker.at.weight;
+  walker.at.weight *= surroundings_.ground_albedo;
+  if (walker.at.weight == 0.0) return;
   const double mu_s = surroundings_.to_sun.z;
   if (mu_s > 0.0) {
-    walker.light.sun += walker.weight * mu_s / kPi * SunTransmittance(walker.ray.origin, random);
+    walker.light.sun +=
+        walker.at.weight * mu_s / kPi * SunTransmittance(walker.at.ray.origin, random);
   }
-  walker.ray.direction = LambertianDirection(1.0, random);
+  if (++walker.at.order >= max_order) return;
+  GoOn(walker, {nullptr, {}}, SunLobe(phases_.Drawn(kTypicalRadius_um, 0.0)), random);
 }
 
 CloudPathLight CloudPathTracer::OnePath(const CloudRay& ray, PathRandom& random,
                                         int max_order) const {
-  Walker walker{ray};
+  Walker walker{.at = {ray}, .segments = {{ray}}};
   Follow(walker, random, max_order);
   return walker.light;
 }
 
 CloudPathLight CloudPathTracer::CollidedPath(const CloudRay& ray, PathRandom& random) const {
   constexpr int kAllOrders = std::numeric_limits<int>::max();
-  Walker walker{ray};
+  Walker walker{.at = {ray}};
   Collide(walker, random, kAllOrders);
-  walker.weight = WeightAfterRoulette(walker.weight, random);
   Follow(walker, random, kAllOrders);
   return walker.light;
 }
@@ -172,20 +219,22 @@ std::optional<CloudRay> CloudPathTracer::AfterCollisions(CloudRay ray, int colli
 }
 
 void CloudPathTracer::Follow(Walker& walker, PathRandom& random, int max_order) const {
-  while (walker.weight > 0.0 && walker.order < max_order) {
-    const double ground_m = GroundDistance_m(walker.ray);
-    const std::optional<double> distance_m = tracker_.Collision(walker.ray, ground_m, random);
+  while (!walker.segments.empty()) {
+    walker.at = walker.segments.back();
+    walker.segments.pop_back();
+    CloudRay& ray = walker.at.ray;
+    const double ground_m = GroundDistance_m(ray);
+    const std::optional<double> distance_m = tracker_.Collision(ray, ground_m, random);
     if (!distance_m && ground_m == kUnbounded_m) {
-      if (walker.ray.direction.z >= 0.0) walker.light.sky += walker.weight;
-      break;
+      if (ray.direction.z >= 0.0) walker.light.sky += walker.at.weight;
+      continue;
     }
-    walker.ray.origin = walker.ray.At(distance_m.value_or(ground_m));
+    ray.origin = ray.At(distance_m.value_or(ground_m));
     if (distance_m) {
       Collide(walker, random, max_order);
     } else {
-      Reflect(walker, random);
+      Reflect(walker, random, max_order);
     }
-    walker.weight = WeightAfterRoulette(walker.weight, random);
   }
 }
 

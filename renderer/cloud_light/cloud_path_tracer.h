@@ -3,15 +3,9 @@
 //
 // Radiance: paths start at the eye. At every collision the path collects the sun's beam, whose
 // transmittance is estimated by ratio tracking, and goes on in a direction drawn from the phase
-// function p. Droplets scatter most light forwards, so few paths turn near the sun, where p is
-// large. A side ray is therefore drawn from p around the sun, and both share the next collision by
-// the balance heuristic (Veach and Guibas 1995, SIGGRAPH, 419): with a = p(d . d'), b = p(d' . s),
-//
-//   main ray, d' drawn from a:  p(d' . s) T a / (a + b)
-//   side ray, d' drawn from b:  p(d' . s) T a / (a + b)
-//
-// where d is the direction before the collision, s that of the sun and T the transmittance to it.
-// Paths that leave upwards collect a uniform sky; below is a Lambertian ground.
+// function p. Vertices have side paths and side rays around the sun (sun_lobe.h). Paths of little
+// worth end at random, where worth is the weight times the brightness of the direction. Paths that
+// leave upwards collect a uniform sky; below is a Lambertian ground.
 //
 // Fluxes: photons start from sun or sky at the top of the field and are counted in columns where
 // they cross the planes through its top and base.
@@ -28,6 +22,7 @@
 #include <vector>
 
 #include "atmosphere/reference/path_sampling.h"
+#include "atmosphere/reference/sun_lobe.h"
 #include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/cloud_light/cloud_phase.h"
 #include "renderer/cloud_light/cloud_tracking.h"
@@ -153,15 +148,21 @@ class CloudPathTracer {
 
  private:
   struct Walker;
+  struct Turn;
   class PhotonCounter;
 
   [[nodiscard]] double GroundDistance_m(const CloudRay& ray) const;
   [[nodiscard]] const PhaseFunction& PhaseAt(const glm::dvec3& point, PathRandom& random) const;
   void Follow(Walker& walker, PathRandom& random, int max_order) const;
   void Collide(Walker& walker, PathRandom& random, int max_order) const;
-  void Reflect(Walker& walker, PathRandom& random) const;
-  [[nodiscard]] double SideRay(const Walker& walker, const PhaseFunction& phase,
+  void Reflect(Walker& walker, PathRandom& random, int max_order) const;
+  /// Adds the next segments of a path from its vertex, and light of its side ray.
+  void GoOn(Walker& walker, const Turn& turn, const atmosphere::reference::SunLobe& lobe,
+            PathRandom& random) const;
+  [[nodiscard]] double SideRay(const glm::dvec3& from, const Turn& turn,
+                               const atmosphere::reference::SunLobe& lobe,
                                PathRandom& random) const;
+  [[nodiscard]] glm::dvec3 AroundSun(double to_sun, PathRandom& random) const;
   [[nodiscard]] CloudRay Launched(CloudSource source, PathRandom& random) const;
   void FollowPhoton(CloudRay ray, int max_order, PathRandom& random, PhotonCounter& counter) const;
 
