@@ -8,9 +8,11 @@
 // take after some collisions. The square of a ray's error counts relative to its radiance, at least a
 // tenth of the mean, as for counted photons. Relative to the square of the radiance, dark rays would
 // outweigh bright ones and leave them 0.5 to 1.5 % too dark in cumulus. Rays after collisions have
-// more noise, of which most is in few bright ones: theirs counts relative to the square. Factors of
-// neighbouring nodes are expected to differ by 0.3, so that noise of the paths does not make them
-// alternate. The fit holds for one field and one sun.
+// more noise, of which most is in few bright ones: theirs counts relative to the square. Factors are
+// expected to be those that many fields have, times a common number; relative to that, to scatter by 0.2
+// and to differ by 0.1 from node to node. These expectations count against the errors of the rays, so
+// that noise of the paths neither makes factors alternate nor flickers from frame to frame of a film.
+// The fit holds for one field and one sun.
 #pragma once
 
 #include <array>
