@@ -20,6 +20,7 @@ constexpr Study kStudies[] = {
     {"day_exposure", DayExposure},
     {"effects_error", EffectsError},
     {"exchange_error", ExchangeError},
+    {"layer_error", LayerError},
     {"path_study", PathStudy},
     {"refracted_twilight", RefractedTwilightError},
     {"sky_tint", SkyTint},

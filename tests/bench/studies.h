@@ -9,6 +9,7 @@ namespace alpenglow::tests {
 void DayExposure(int count, char** arguments);
 void EffectsError(int count, char** arguments);
 void ExchangeError(int count, char** arguments);
+void LayerError(int count, char** arguments);
 void PathStudy(int count, char** arguments);
 void RefractedTwilightError(int count, char** arguments);
 void SkyTint(int count, char** arguments);
