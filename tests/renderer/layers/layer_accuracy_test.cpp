@@ -116,6 +116,26 @@ TEST(LayerAccuracy, ManyStreamsApproachDoubling) {
   EXPECT_LT(errors[2].flux, 1e-4);
 }
 
+TEST(LayerAccuracy, TheAureoleIsThatOfManyStreams) {
+  // With 48 streams the forward peak is 0.0004 of the light that is scattered.
+  const int many = tests::ScaledDown(48, 16);
+  const double zenith = 40.0 * kPi / 180.0;
+  for (const double albedo : {1.0, 0.8}) {
+    for (const double depth : {1.0, 5.0}) {
+      const CloudyAir air{depth, albedo, 0.85, 0.1};
+      const LayerStack few = air.Fast(8), truth = air.Fast(many);
+      const double bottom = few.DepthAbove(few.size());
+      const LayerField seen = LayerField::UnderSun(few, std::cos(zenith));
+      const LayerField expected = LayerField::UnderSun(truth, std::cos(zenith));
+      for (const double angle_deg : {0.1, 0.5, 1.5, 3.0, 8.0}) {
+        const LightWay way{-std::cos(zenith - angle_deg * kPi / 180.0), 0.0};
+        EXPECT_NEAR(seen.Radiance(bottom, way) / expected.Radiance(bottom, way), 1.0, 0.01)
+            << albedo << " " << depth << " " << angle_deg;
+      }
+    }
+  }
+}
+
 /// Rows of a published table: cells by the names of the columns.
 using TableRow = std::map<std::string, std::string>;
 
