@@ -101,8 +101,8 @@ class SunlitLine {
 
 }  // namespace
 
-double ScatteredOnce(const LayerStack& stack, double mu_s, const std::vector<LineSegment>& line,
-                     const LightWay& way) {
+double SunScatteredOnce(const LayerStack& stack, double mu_s, const std::vector<LineSegment>& line,
+                        const LightWay& way) {
   return SunlitLine(stack, mu_s, line, way).Radiance();
 }
 

@@ -24,7 +24,7 @@ struct LightWay {
 
 /// Returns the radiance per unit irradiance across the beam [1/sr].
 /// @param mu_s  cosine of the sun's zenith angle, in (0, 1]. @param line  of way.mu, never 0.
-[[nodiscard]] double ScatteredOnce(const LayerStack& stack, double mu_s,
-                                   const std::vector<LineSegment>& line, const LightWay& way);
+[[nodiscard]] double SunScatteredOnce(const LayerStack& stack, double mu_s,
+                                      const std::vector<LineSegment>& line, const LightWay& way);
 
 }  // namespace alpenglow::renderer

@@ -68,6 +68,26 @@ LayerField LayerField::UnderUniformSky(const LayerStack& stack) {
   return field;
 }
 
+LayerField LayerField::UnderSky(const LayerStack& stack,
+                                const std::function<double(const LightWay&)>& sky) {
+  LayerField field(stack);
+  const StreamSet& streams = stack.streams();
+  // As many azimuths as modes have cosines.
+  const GaussRule& rule = GaussLegendre(std::min(streams.streams() + 4, kMaxGaussNodes));
+  for (int m = 0; m < stack.modes(); ++m) {
+    std::vector<double> from_above(streams.size(), 0.0);
+    for (std::size_t i = 0; i < streams.size(); ++i) {
+      for (std::size_t k = 0; k < rule.node.size(); ++k) {
+        const double azimuth = kPi * rule.node[k];
+        from_above[i] += (m == 0 ? 1.0 : 2.0) * rule.weight[k] * std::cos(m * azimuth) *
+                         sky({-streams.mu(i), azimuth}) * stack.unit_light()[i];
+      }
+    }
+    field.AddMode(m, {.from_above = from_above}, std::vector<Solved>(stack.size()));
+  }
+  return field;
+}
+
 LayerField LayerField::OverUniformGround(const LayerStack& stack) {
   LayerField field(stack);
   field.of_ground_ = 1.0;
@@ -209,7 +229,7 @@ LayerFluxes LayerField::Fluxes(double depth) const {
 double LayerField::Radiance(double depth, const LightWay& way) const {
   const double mu = SteepEnough(RequireInRange(way.mu, -1.0, 1.0, "mu"));
   const std::vector<LineSegment> line = LineOfSight(stack_, PlaceAtDepth(stack_, depth), mu);
-  double sum = mu_s_ ? ScatteredOnce(stack_, *mu_s_, line, {mu, way.azimuth}) : 0.0;
+  double sum = mu_s_ ? SunScatteredOnce(stack_, *mu_s_, line, {mu, way.azimuth}) : 0.0;
   for (const LineSegment& segment : line) {
     if (!(segment.to > segment.from)) continue;
     for (std::size_t m = 0; m < solved_.size(); ++m) {
@@ -219,6 +239,18 @@ double LayerField::Radiance(double depth, const LightWay& way) const {
   }
   const LineSegment& last = line.back();
   return sum + last.left * std::exp(-(last.to - last.from) / std::abs(mu)) * Behind(mu);
+}
+
+std::vector<double> LayerField::SourceOfHigherOrders(double depth) const {
+  const LayerPlace place = PlaceAtDepth(stack_, depth);
+  std::vector<double> source;
+  for (std::size_t m = 0; m < solved_.size(); ++m) {
+    const Amplitudes at = At(solved_[m][place.layer], place);
+    const std::vector<double> of_mode =
+        stack_.mode(static_cast<int>(m), place.layer).SourceOf(at.value, at.slope);
+    source.insert(source.end(), of_mode.begin(), of_mode.end());
+  }
+  return source;
 }
 
 double LayerField::Behind(double mu) const {

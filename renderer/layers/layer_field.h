@@ -28,6 +28,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -55,6 +56,10 @@ class LayerField {
   /// @param mu_s  cosine of the sun's zenith angle, in (0, 1]; otherwise InputError.
   [[nodiscard]] static LayerField UnderSun(const LayerStack& stack, double mu_s);
   [[nodiscard]] static LayerField UnderUniformSky(const LayerStack& stack);
+  /// @param sky  radiance at the top by the direction in which the light travels, even in azimuth.
+  ///   Between the streams, Radiance() takes it as 0 at the end of a line of sight.
+  [[nodiscard]] static LayerField UnderSky(const LayerStack& stack,
+                                           const std::function<double(const LightWay&)>& sky);
   [[nodiscard]] static LayerField OverUniformGround(const LayerStack& stack);
 
   /// @param depth  optical depth below the top, in [0, that of the stack]; otherwise InputError.
@@ -64,6 +69,11 @@ class LayerField {
   /// @param way  directions within 1e-6 of the horizontal count as going upwards with mu = 1e-6;
   ///   InputError unless mu is in [-1, 1].
   [[nodiscard]] double Radiance(double depth, const LightWay& way) const;
+
+  /// Returns the light of all orders but the first of the sun's beam that is scattered into any
+  /// direction, per optical depth after delta-M: s_lm of
+  /// source = sum over l, m of s_lm Lambda_l^m(mu) cos(m azimuth), at [m * streams + l].
+  [[nodiscard]] std::vector<double> SourceOfHigherOrders(double depth) const;
 
  private:
   /// Values a and slopes a' + g e^(-tau / mu_s) at one depth.

@@ -136,4 +136,15 @@ EvenAndOdd LayerMode::EmissionAt(const std::vector<double>& legendre) const {
   return sums;
 }
 
+std::vector<double> LayerMode::SourceOf(const std::vector<double>& value,
+                                        const std::vector<double>& slope) const {
+  const std::size_t n = decay_.size(), m = static_cast<std::size_t>(m_);
+  std::vector<double> source(emission_.size() / n, 0.0);
+  for (std::size_t l = m; l < source.size(); ++l) {
+    const std::vector<double>& amplitude = (l - m) % 2 == 0 ? value : slope;
+    for (std::size_t j = 0; j < n; ++j) source[l] += emission_[l * n + j] * amplitude[j];
+  }
+  return source;
+}
+
 }  // namespace alpenglow::renderer

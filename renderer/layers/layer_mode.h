@@ -63,6 +63,9 @@ class LayerMode {
   /// Returns the factors of a_j (even) and a_j' (odd) in the source function of a direction.
   /// @param legendre  AssociatedLegendre of its mu, for l < streams.
   [[nodiscard]] EvenAndOdd EmissionAt(const std::vector<double>& legendre) const;
+  /// Returns the source function by degree: its sum with AssociatedLegendre is that of a direction.
+  [[nodiscard]] std::vector<double> SourceOf(const std::vector<double>& value,
+                                             const std::vector<double>& slope) const;
 
  private:
   void SetEmission(const StreamSet& streams, const ScaledLayer& layer);

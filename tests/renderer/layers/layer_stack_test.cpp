@@ -107,6 +107,48 @@ TEST(LayerStack, AUniformSkyOverWhiteGroundIsUniformEverywhere) {
   }
 }
 
+TEST(LayerStack, ASkyOfOneRadianceIsAUniformSky) {
+  const LayerStack stack({{0.2, 1.0, kMoleculeMoments}, {5.0, 0.9, LobeMoments(0.75)}}, 0.2);
+  const LayerField uniform = LayerField::UnderUniformSky(stack);
+  const LayerField any = LayerField::UnderSky(stack, [](const LightWay&) { return 1.0; });
+  for (const double depth : {0.0, 0.2, 5.2}) {
+    EXPECT_NEAR(any.Fluxes(depth).down, uniform.Fluxes(depth).down, 1e-9);
+    EXPECT_NEAR(any.Fluxes(depth).up, uniform.Fluxes(depth).up, 1e-9);
+    EXPECT_NEAR(any.Radiance(depth, {0.5, 1.0}), uniform.Radiance(depth, {0.5, 1.0}), 1e-9);
+  }
+}
+
+TEST(LayerStack, ASkyOfASmallSourceIsABeam) {
+  // A sky that is bright in the azimuth of the beam only has the modes of the beam.
+  const LayerStack stack({{1.0, 1.0, LobeMoments(0.6)}}, 0.0);
+  const double mu_s = stack.streams().mu(2), weight = stack.streams().weight(2);
+  const LayerField sky = LayerField::UnderSky(stack, [&](const LightWay& way) {
+    double modes = 0.5;
+    for (int m = 1; m < 8; ++m) modes += std::cos(m * way.azimuth);
+    return std::abs(way.mu + mu_s) < 1e-9 ? modes / (kPi * weight) : 0.0;
+  });
+  const LayerFluxes expected = LayerField::UnderSun(stack, mu_s).Fluxes(0.0);
+  EXPECT_NEAR(sky.Fluxes(0.0).up, expected.up, 1e-6) << "k is moved by a millionth";
+  EXPECT_NEAR(sky.Radiance(0.0, {0.4, 2.0}),
+              LayerField::UnderSun(stack, mu_s).Radiance(0.0, {0.4, 2.0}), 0.02)
+      << "the first order of the beam has no truncated phase function";
+}
+
+TEST(LayerStack, RadianceChangesByItsSource) {
+  const LayerStack stack({{2.0, 0.9, LobeMoments(0.7)}}, 0.3);
+  const LayerField field = LayerField::UnderUniformSky(stack);
+  const double scale = stack.scaled(0).scale, step = 1e-3, mu = 0.6;
+  const std::vector<double> by_degree = field.SourceOfHigherOrders(1.0);
+  const std::vector<double> legendre = AssociatedLegendre(0, 7, mu);
+  double source = 0.0;
+  for (std::size_t l = 0; l < 8; ++l) source += by_degree[l] * legendre[l];
+  const double slope =
+      (field.Radiance(1.0 + step, {mu, 0.0}) - field.Radiance(1.0 - step, {mu, 0.0})) /
+      (2.0 * step * scale);
+  EXPECT_NEAR(field.Radiance(1.0, {mu, 0.0}) - mu * slope, source, 1e-6)
+      << "the square of the step";
+}
+
 TEST(LayerStack, ThinLayersScatterOnce) {
   const double depth = 1e-6, mu = 0.4, mu_s = 0.7, azimuth = 2.0, g = 0.75;
   const LayerStack stack({{depth, 0.9, LobeMoments(g)}}, 0.0);
