@@ -15,7 +15,6 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr double kEndless_m = std::numeric_limits<double>::infinity();
 // Steps of the optical depth of a ray and of free flights, among them the last one, which ends in
 // coarse cells; voxels have 20 m.
 constexpr double kDepthStep_m = 5.0, kFlightStep_m = 8.0, kLastStep_m = 16.0;
@@ -81,7 +80,7 @@ struct CloudHybrid::Walker {
   int left = 0;        // true collisions from this one on
 };
 
-KorobovLattice::KorobovLattice(int points) : points_(points) {
+KorobovLattice::KorobovLattice(int points) {
   constexpr int kCandidates = 256;
   double least = std::numeric_limits<double>::infinity();
   const int step = std::max(points / kCandidates, 1);
@@ -94,22 +93,27 @@ KorobovLattice::KorobovLattice(int points) : points_(points) {
   }
 }
 
-KorobovLattice::KorobovLattice(int points, int generator) : points_(points) {
+KorobovLattice::KorobovLattice(int points, int generator) {
+  const auto count = static_cast<std::uint64_t>(points);
+  std::array<std::uint64_t, kDimensions> multiple{};
   std::uint64_t power = 1;
-  for (std::uint64_t& each : generator_) {
+  for (std::uint64_t& each : multiple) {
     each = power;
-    power = power * static_cast<std::uint64_t>(generator) % static_cast<std::uint64_t>(points);
+    power = power * static_cast<std::uint64_t>(generator) % count;
+  }
+  for (std::uint64_t i = 0; i < count; ++i) {
+    std::array<double, kDimensions>& point = at_.emplace_back();
+    for (std::size_t j = 0; j < kDimensions; ++j) {
+      point[j] = static_cast<double>(i * multiple[j] % count) / static_cast<double>(count);
+    }
   }
 }
 
 double KorobovLattice::Error() const {
   double sum = 0.0;
-  for (int i = 0; i < points_; ++i) {
+  for (const std::array<double, kDimensions>& point : at_) {
     double product = 1.0;
-    for (std::size_t j = 0; j < kDimensions; ++j) {
-      const double x = At(static_cast<std::uint64_t>(i), j);
-      product *= 1.0 + kPi * kPi * (x * x - x + 1.0 / 6.0);
-    }
+    for (const double x : point) product *= 1.0 + kPi * kPi * (x * x - x + 1.0 / 6.0);
     sum += product;
   }
   return sum;
@@ -147,7 +151,8 @@ double CloudHybrid::SideRay(const Walker& walker, const PhaseFunction& phase,
                             PathRandom& random) const {
   const glm::dvec3& to_sun = solved_.depths.to_sun();
   CloudRay side{walker.ray.origin, ScatteredFrom(to_sun, phase, random)};
-  const std::optional<double> distance_m = true_medium_.Collision(side, kEndless_m, random);
+  const std::optional<double> distance_m =
+      true_medium_.DistanceAt(side, -std::log1p(-random.Next()), kFlightStep_m);
   if (!distance_m) return 0.0;
   side.origin = side.At(*distance_m);
   const double main = Phase(phase, glm::dot(walker.ray.direction, side.direction));
@@ -175,8 +180,7 @@ CloudPathLight CloudHybrid::Outside(const glm::dvec3& direction) {
   return direction.z >= 0.0 ? CloudPathLight{.sky = 1.0} : CloudPathLight{.ground = 1.0};
 }
 
-double CloudHybrid::ScaledBeamAt(const CloudRay& event, double to_sun) const {
-  const CloudHarmonics factors = solved_.optics.SourceFactors(-event.direction);
+double CloudHybrid::ScaledBeam(const CloudHarmonics& factors, double to_sun) const {
   double source = 0.0;
   for (std::size_t i = 0; i < kCloudMoments; ++i) {
     source += static_cast<double>(factors[i] * beam_[i]);
@@ -184,20 +188,7 @@ double CloudHybrid::ScaledBeamAt(const CloudRay& event, double to_sun) const {
   return source * std::exp(-solved_.optics.extinction_scale() * to_sun);
 }
 
-double CloudHybrid::LastSideRay(const Walker& walker, const PhaseFunction& phase,
-                                PathRandom& random) const {
-  const glm::dvec3& to_sun = solved_.depths.to_sun();
-  CloudRay side{walker.ray.origin, ScatteredFrom(to_sun, phase, random)};
-  const std::optional<double> distance_m =
-      scaled_medium_.DistanceAt(side, -std::log1p(-random.Next()), kLastStep_m);
-  if (!distance_m) return 0.0;
-  side.origin = side.At(*distance_m);
-  const double main = Phase(phase, glm::dot(walker.ray.direction, side.direction));
-  return ScaledBeamAt(side, solved_.depths.OpticalDepth(side.origin)) * main /
-         (main + Phase(phase, glm::dot(to_sun, side.direction)));
-}
-
-CloudPathLight CloudHybrid::LastEvent(const CloudRay& ray, double fraction, double share) const {
+CloudPathLight CloudHybrid::LastEvent(const CloudRay& ray, double fraction) const {
   const std::optional<double> distance_m =
       scaled_medium_.DistanceAt(ray, -std::log1p(-fraction), kLastStep_m);
   if (!distance_m) return Outside(ray.direction);
@@ -207,7 +198,7 @@ CloudPathLight CloudHybrid::LastEvent(const CloudRay& ray, double fraction, doub
   const CloudCells::Mixture around = solved_.sun.cells().Around(event.origin);
   const auto higher = static_cast<double>(solved_.sun.Source(around, factors));
   const auto sky = static_cast<double>(solved_.sky.Source(around, factors));
-  return {.sun = share * ScaledBeamAt(event, to_sun) + solved_.factor.At(to_sun) * higher,
+  return {.sun = ScaledBeam(factors, to_sun) + solved_.factor.At(to_sun) * higher,
           .sky = sky,
           .ground = solved_.ground != nullptr
                         ? static_cast<double>(solved_.ground->Source(around, factors))
@@ -215,17 +206,14 @@ CloudPathLight CloudHybrid::LastEvent(const CloudRay& ray, double fraction, doub
 }
 
 void CloudHybrid::End(Walker& walker, const PhaseFunction& phase, Random& random) const {
-  walker.light.sun += walker.weight * LastSideRay(walker, phase, random.independent());
-  const double cosine = SampleCosine(phase, random.Next()), main = Phase(phase, cosine);
+  const double cosine = SampleCosine(phase, random.Next());
   const double azimuth_rad = 2.0 * kPi * random.Next(), fraction = random.Next();
   const double weight = walker.weight / kEnds;
   for (int i = 0; i < kEnds; ++i) {
     const double turn = static_cast<double>(i) / kEnds, moved = fraction + turn;
     const glm::dvec3 next =
         TurnedFrom(walker.ray.direction, cosine, azimuth_rad + 2.0 * kPi * turn);
-    const double share = main / (main + Phase(phase, glm::dot(next, solved_.depths.to_sun())));
-    const CloudPathLight light =
-        LastEvent({walker.ray.origin, next}, moved - std::floor(moved), share);
+    const CloudPathLight light = LastEvent({walker.ray.origin, next}, moved - std::floor(moved));
     walker.light.sun += weight * light.sun;
     walker.light.sky += weight * light.sky;
     walker.light.ground += weight * light.ground;

@@ -5,8 +5,7 @@
 // function p. The path then collides once more in the medium of the moments (cloud_optics.h) and
 // collects the source of the moments there, so that coarse cells are seen only through K
 // scatterings. In the direction d of the path, with the direction s to the sun and the optical depth
-// tau_s to it, its events collect of the sun, as CloudPathTracer does with side rays (in the last line
-// for the first term),
+// tau_s to it, its events collect of the sun
 //
 //   events 1 to K - 1   p(d . s) exp(-tau_s)
 //   event K             B(d . s, f w tau_s) exp(-(1 - f w) tau_s)
@@ -14,7 +13,8 @@
 //
 // From event K on the medium is that of the moments, where the forward peak is not scattering: the
 // beam that event K sees is therefore the one that its forward peak has broadened (forward_peak.h).
-// With p exp(-tau_s) there, that light would be lost. Uniform light of sky and ground is collected
+// With p exp(-tau_s) there, that light would be lost. Events 2 to K have side rays as in CloudPathTracer;
+// the source of the last one is smooth and needs none. Uniform light of sky and ground is collected
 // where paths leave the field and at the last event.
 //
 // Paths of a ray are the points of a lattice with a random shift (Cranley and Patterson 1976, SIAM J.
@@ -32,6 +32,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <vector>
 
 #include "renderer/cloud_light/cloud_factor.h"
 #include "renderer/cloud_light/cloud_low_sun.h"
@@ -81,18 +82,15 @@ class KorobovLattice {
   explicit KorobovLattice(int points);
 
   /// Returns a coordinate of a point.
-  [[nodiscard]] double At(std::uint64_t point, std::size_t dimension) const {
-    const auto points = static_cast<std::uint64_t>(points_);
-    return static_cast<double>(point * generator_[dimension] % points) /
-           static_cast<double>(points);
+  [[nodiscard]] double At(std::size_t point, std::size_t dimension) const {
+    return at_[point][dimension];
   }
 
  private:
   KorobovLattice(int points, int generator);
   [[nodiscard]] double Error() const;
 
-  int points_;
-  std::array<std::uint64_t, kDimensions> generator_{};
+  std::vector<std::array<double, kDimensions>> at_;
 };
 
 /// Immutable; safe to use from many threads.
@@ -125,10 +123,10 @@ class CloudHybrid {
   void Turn(Walker& walker, const PhaseFunction& phase, Random& random) const;
   /// Returns the unit light of sky or ground.
   [[nodiscard]] static CloudPathLight Outside(const glm::dvec3& direction);
-  [[nodiscard]] double ScaledBeamAt(const CloudRay& event, double to_sun) const;
-  [[nodiscard]] double LastSideRay(const Walker& walker, const PhaseFunction& phase,
-                                   PathRandom& random) const;
-  [[nodiscard]] CloudPathLight LastEvent(const CloudRay& ray, double fraction, double share) const;
+  /// Returns the source of the beam in the medium of the moments.
+  /// @param factors  CloudOptics::SourceFactors.
+  [[nodiscard]] double ScaledBeam(const CloudHarmonics& factors, double to_sun) const;
+  [[nodiscard]] CloudPathLight LastEvent(const CloudRay& ray, double fraction) const;
   void End(Walker& walker, const PhaseFunction& phase, Random& random) const;
 
   const CloudField* field_;
