@@ -155,9 +155,10 @@ CloudLight CloudLight::WithSun(const glm::dvec3& to_sun) const {
   return moved.WithMethod(method_);
 }
 
-CloudLight CloudLight::WithMethod(CloudLightMethod method) const {
+CloudLight CloudLight::WithMethod(CloudLightMethod method, std::optional<int> of_ray) const {
   const FieldLight& light = *field_light_;
   CloudHybridOptions paths = light.options.paths;
+  paths.paths = of_ray.value_or(paths.paths);
   if (method == CloudLightMethod::kTraced) paths.collisions.reset();
   CloudLight same = *this;
   same.method_ = method;
@@ -172,21 +173,22 @@ CloudLight CloudLight::WithMethod(CloudLightMethod method) const {
   return same;
 }
 
-CloudRayLight CloudLight::Radiance(const CloudRay& ray, double length_m) const {
+CloudRayLights CloudLight::RadianceByBoth(const CloudRay& ray, double length_m) const {
   const CloudRayParts parts = sun_light_->gather.Along(ray, length_m);
-  ScatteredByPart light{sun_light_->factor.Sun(parts), parts.sky, parts.ground};
-  if (method_ != CloudLightMethod::kFast && parts.transmittance < 1.0) {
-    light = BesidePeak(paths_->Radiance(ray, length_m, SeedOf(ray, length_m)), ray,
-                       parts.scaled_transmittance);
-  }
-  const CloudGroundIrradiance& irradiance = sun_light_->irradiance;
-  const double reflected = light.ground * field_light_->ground_albedo / kPi;
-  return {.sun = light.sun + reflected * (irradiance.direct + irradiance.diffuse),
-          .sky = light.sky + reflected * irradiance.sky,
-          .ground = light.ground + reflected * irradiance.ground,
-          .transmittance = parts.transmittance,
-          .scaled_transmittance = parts.scaled_transmittance,
-          .mean_distance_m = parts.mean_distance_m};
+  const auto over_ground = [&](const ScatteredByPart& light) {
+    const CloudGroundIrradiance& irradiance = sun_light_->irradiance;
+    const double reflected = light.ground * field_light_->ground_albedo / kPi;
+    return CloudRayLight{.sun = light.sun + reflected * (irradiance.direct + irradiance.diffuse),
+                         .sky = light.sky + reflected * irradiance.sky,
+                         .ground = light.ground + reflected * irradiance.ground,
+                         .transmittance = parts.transmittance,
+                         .scaled_transmittance = parts.scaled_transmittance,
+                         .mean_distance_m = parts.mean_distance_m};
+  };
+  const CloudRayLight fast = over_ground({sun_light_->factor.Sun(parts), parts.sky, parts.ground});
+  if (method_ == CloudLightMethod::kFast || parts.transmittance >= 1.0) return {fast, fast};
+  const CloudScattered traced = paths_->Radiance(ray, length_m, SeedOf(ray, length_m));
+  return {fast, over_ground(BesidePeak(traced, ray, parts.scaled_transmittance))};
 }
 
 const CloudGroundIrradiance& CloudLight::ground_irradiance() const {

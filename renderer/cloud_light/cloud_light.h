@@ -21,6 +21,7 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -68,6 +69,11 @@ struct CloudRayLight {
   double mean_distance_m = 0.0;
 };
 
+/// Light of one ray by the fast method, and by the method of choice.
+struct CloudRayLights {
+  CloudRayLight fast, chosen;
+};
+
 /// Mean irradiances of level ground, with light that goes to and fro between it and clouds.
 struct CloudGroundIrradiance {
   double direct = 0.0;   // of the sun's beam, for unit irradiance across it
@@ -89,15 +95,22 @@ class CloudLight {
   /// Returns the light of the same field under another sun. It shares the light of sky and ground.
   [[nodiscard]] CloudLight WithSun(const glm::dvec3& to_sun) const;
 
-  /// Returns the light of the same solution by another method. It shares all tables.
-  [[nodiscard]] CloudLight WithMethod(CloudLightMethod method) const;
+  /// Returns the light of the same solution by another method. It shares all tables. Throws InputError
+  /// for a number of paths out of range.
+  /// @param paths  of a ray; nothing: that of the options.
+  [[nodiscard]] CloudLight WithMethod(CloudLightMethod method,
+                                      std::optional<int> paths = std::nullopt) const;
 
   /// Returns the light along a ray. The ground below reflects its mean irradiance; the ground and
   /// the sky behind the clouds are not included. Transmittances and the distance are those of the
   /// fast method. Random numbers depend on the ray alone, so that the same ray has the same light.
   /// @param length_m  of the ray, >= 0; may be infinite.
   [[nodiscard]] CloudRayLight Radiance(
-      const CloudRay& ray, double length_m = std::numeric_limits<double>::infinity()) const;
+      const CloudRay& ray, double length_m = std::numeric_limits<double>::infinity()) const {
+    return RadianceByBoth(ray, length_m).chosen;
+  }
+  /// Returns the same beside that of the fast method.
+  [[nodiscard]] CloudRayLights RadianceByBoth(const CloudRay& ray, double length_m) const;
 
   /// Returns the transmittance of clouds from a point in clear air or on the ground to the sun.
   [[nodiscard]] double SunTransmittance(const glm::dvec3& point) const {

@@ -118,14 +118,20 @@ Spectrum NightAlong(const CloudsOnRay& clouds, const NightScattered& night, cons
 }
 
 LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
-                     const SolvedAir& air, const DistantLight& light, CloudLightMethod method)
+                     const SolvedAir& air, const DistantLight& light, CloudLightMethod method,
+                     std::optional<PixelRays> pixels)
     : clouds_(std::move(clouds)), geometry_(geometry), air_(air), light_(light) {
+  std::optional<int> paths;
+  if (pixels && method == CloudLightMethod::kHybrid) {
+    shared_.emplace(std::move(*pixels));
+    paths = kSharedPaths;
+  }
   std::vector<std::shared_ptr<const CloudSunDepths>> suns;
   double highest_m = 0.0;
   for (std::size_t i = 0; i < layers(); ++i) {
     // The depths live as long as the solution.
     suns.emplace_back(clouds_, &Layer(i).sun());
-    along_rays_.push_back(Layer(i).WithMethod(method));
+    along_rays_.push_back(Layer(i).WithMethod(method, paths));
     highest_m = std::max(highest_m, RangeOf(i).high_m);
   }
   shadow_ = std::make_shared<const CloudShadow>(std::move(suns), highest_m, geometry.radius_m());
@@ -246,44 +252,68 @@ double LitClouds::PastOthers(std::size_t layer, const glm::dvec3& flat_point) co
   return left;
 }
 
-CloudScreen LitClouds::Screen(std::size_t layer, const CloudRayLight& grey, const glm::dvec3& point,
-                              double distance_m) const {
+CloudScreen LitClouds::Screen(const CloudRayPart& grey, const glm::dvec3& point) const {
   const LocalLight sun = LocalLightAt(geometry_, point, light_);
-  const double past = PastOthers(layer, InFlatFrame(point, geometry_.radius_m()));
+  const double past = PastOthers(grey.layer, InFlatFrame(point, geometry_.radius_m()));
   const Spectrum beam = static_cast<float>(past * sun.visible_fraction) *
                         air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
-  return {distance_m, static_cast<float>(grey.scaled_transmittance),
-          static_cast<float>(grey.sun) * beam + static_cast<float>(grey.sky) * sky_above_[layer] +
-              static_cast<float>(grey.ground) * ground_below_[layer],
-          static_cast<float>(grey.ground)};
+  const auto [from_sun, from_sky, from_ground] = grey.light;
+  return {grey.distance_m, static_cast<float>(grey.scaled_transmittance),
+          static_cast<float>(from_sun) * beam +
+              static_cast<float>(from_sky) * sky_above_[grey.layer] +
+              static_cast<float>(from_ground) * ground_below_[grey.layer],
+          static_cast<float>(from_ground)};
+}
+
+std::vector<CloudRayPart> LitClouds::PartsOf(const glm::dvec3& origin, const PixelRays::Ray& ray,
+                                             bool by_paths) const {
+  constexpr double kNothing = 1e-4;
+  struct Piece {
+    std::size_t layer;
+    int number;
+    CloudChord chord;
+  };
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i < layers(); ++i) {
+    int number = 0;
+    for (const CloudChord& chord :
+         ChordsWithin(RangeOf(i), origin, ray.direction, ray.length_m, geometry_.radius_m()))
+      pieces.push_back({i, number++, chord});
+  }
+  std::sort(pieces.begin(), pieces.end(),
+            [](const Piece& a, const Piece& b) { return a.chord.begin_m < b.chord.begin_m; });
+  std::vector<CloudRayPart> parts;
+  double left = 1.0;
+  for (const Piece& piece : pieces) {
+    const CloudLight& light = by_paths ? along_rays_[piece.layer] : Layer(piece.layer);
+    const auto [fast, chosen] =
+        light.RadianceByBoth({piece.chord.origin, piece.chord.direction}, piece.chord.length_m);
+    if (fast.transmittance >= 1.0) continue;
+    parts.push_back({.layer = piece.layer,
+                     .chord = piece.number,
+                     .distance_m = piece.chord.OnRay(fast.mean_distance_m),
+                     .transmittance = fast.transmittance,
+                     .scaled_transmittance = fast.scaled_transmittance,
+                     .fast = {fast.sun, fast.sky, fast.ground},
+                     .light = {chosen.sun, chosen.sky, chosen.ground}});
+    left *= fast.scaled_transmittance;
+    if (left < kNothing) break;
+  }
+  return parts;
 }
 
 CloudsOnRay LitClouds::Along(const glm::dvec3& origin, const glm::dvec3& direction,
                              double length_m) const {
-  constexpr double kNothing = 1e-4;
-  struct Part {
-    std::size_t layer;
-    CloudChord chord;
+  const auto trace = [&](const PixelRays::Ray& ray, bool by_paths) {
+    return PartsOf(origin, ray, by_paths);
   };
-  std::vector<Part> parts;
-  for (std::size_t i = 0; i < layers(); ++i) {
-    for (const CloudChord& chord :
-         ChordsWithin(RangeOf(i), origin, direction, length_m, geometry_.radius_m()))
-      parts.push_back({i, chord});
-  }
-  std::sort(parts.begin(), parts.end(),
-            [](const Part& a, const Part& b) { return a.chord.begin_m < b.chord.begin_m; });
+  const PixelRays::Ray ray{direction, length_m};
   CloudsOnRay clouds;
-  double left = 1.0, unscattered = 1.0;
-  for (const Part& part : parts) {
-    const CloudRayLight grey = along_rays_[part.layer].Radiance(
-        {part.chord.origin, part.chord.direction}, part.chord.length_m);
-    if (grey.transmittance >= 1.0) continue;
-    const double distance_m = part.chord.OnRay(grey.mean_distance_m);
-    clouds.Add(Screen(part.layer, grey, origin + distance_m * direction, distance_m));
-    left *= grey.scaled_transmittance;
-    unscattered *= grey.transmittance;
-    if (left < kNothing) break;
+  double unscattered = 1.0;
+  for (const CloudRayPart& part :
+       shared_ && shared_->eye() == origin ? shared_->Parts(ray, trace) : trace(ray, true)) {
+    clouds.Add(Screen(part, origin + part.distance_m * direction));
+    unscattered *= part.transmittance;
   }
   clouds.unscattered = static_cast<float>(unscattered);
   return clouds;

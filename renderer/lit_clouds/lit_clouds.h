@@ -51,6 +51,7 @@
 #include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/lit_clouds/cloud_shadow.h"
 #include "renderer/lit_clouds/layer_exchange.h"
+#include "renderer/lit_clouds/shared_cloud_light.h"
 #include "renderer/media/lit_medium.h"
 #include "renderer/surface/scene_geometry.h"
 
@@ -131,10 +132,15 @@ struct NightScattered {
 /// Immutable; safe to use from many threads. Refers to geometry and air.
 class LitClouds {
  public:
-  /// @param clouds  solved for the light. @param method  of light along rays.
+  /// @param clouds  solved for the light. @param method  of light along rays. @param pixels  of a
+  ///     picture. Their rays share the noise of the hybrid method (shared_cloud_light.h), with
+  ///     kSharedPaths paths each. Nothing: every ray has the paths of the options.
   LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
             const SolvedAir& air, const DistantLight& light,
-            CloudLightMethod method = CloudLightMethod::kFast);
+            CloudLightMethod method = CloudLightMethod::kFast,
+            std::optional<PixelRays> pixels = std::nullopt);
+
+  static constexpr int kSharedPaths = 16;
 
   /// Returns the clouds on a ray. @param length_m  may be infinite.
   [[nodiscard]] CloudsOnRay Along(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -155,12 +161,15 @@ class LitClouds {
                                                          const glm::dvec3& direction) const;
 
  private:
+  /// Returns the clouds on a ray, from the nearest on, as long as they are seen.
+  /// @param by_paths  whether the light is that by the method of choice.
+  [[nodiscard]] std::vector<CloudRayPart> PartsOf(const glm::dvec3& origin,
+                                                  const PixelRays::Ray& ray, bool by_paths) const;
   void FindExchange();
   /// Returns the mean beam on a plane behind other layers, per unit solar irradiance.
   /// @param of_layer  which does not dim the beam; the number of layers: none.
   [[nodiscard]] Spectrum MeanBeam(double altitude_m, std::size_t of_layer) const;
-  [[nodiscard]] CloudScreen Screen(std::size_t layer, const CloudRayLight& grey,
-                                   const glm::dvec3& point, double distance_m) const;
+  [[nodiscard]] CloudScreen Screen(const CloudRayPart& grey, const glm::dvec3& point) const;
   /// Returns the transmittance to the light of the layers other than one.
   [[nodiscard]] double PastOthers(std::size_t layer, const glm::dvec3& flat_point) const;
 
@@ -175,6 +184,7 @@ class LitClouds {
 
   std::shared_ptr<const SolvedClouds> clouds_;
   std::vector<CloudLight> along_rays_;  // of each layer, by the method
+  std::optional<SharedCloudLight> shared_;
   const SceneGeometry& geometry_;
   SolvedAir air_;
   DistantLight light_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "atmosphere/astronomy/moon.h"
@@ -45,6 +46,21 @@ double WidestPixelAt(const CameraRays& camera, const glm::dvec3& direction) {
   if (!place) return camera.PixelAngle();
   const auto [across_rad, down_rad] = camera.PixelExtentAt((*place)[0], (*place)[1]);
   return std::max(across_rad, down_rad);
+}
+
+/// Returns the middle rays of a picture's pixels, not refracted, up to what they meet.
+/// @param geometry  of the scene, which outlives the picture.
+PixelRays PixelRaysOf(const CameraRays& camera, const SceneGeometry& geometry,
+                      const RenderSettings& settings) {
+  const auto ray = [camera, &geometry](int column, int row) {
+    const glm::dvec3 direction = camera.Direction(column + 0.5, row + 0.5);
+    const Hit hit = geometry.Trace(camera.eye(), direction, camera.PixelAngle());
+    return PixelRays::Ray{direction, hit.kind == HitKind::kSky
+                                         ? std::numeric_limits<double>::infinity()
+                                         : hit.distance_m};
+  };
+  return {settings.width, settings.height, camera.eye(), ray,
+          [camera](const glm::dvec3& direction) { return camera.PlaceOf(direction); }};
 }
 
 }  // namespace
@@ -157,7 +173,7 @@ void FrameContext::LightClouds() {
     const DistantLight& light = source.light.source;
     source.clouds = std::make_shared<const LitClouds>(
         scene_->clouds().At(instant_, light.direction.seen), scene_->geometry(), over_ground_->air,
-        light, settings_.cloud_light);
+        light, settings_.cloud_light, PixelRaysOf(camera(), geometry(), settings_));
   }
 }
 

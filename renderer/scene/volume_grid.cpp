@@ -16,7 +16,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr int kBlock = 4;  // samples per side
+constexpr int kVolumeBlock = 4;  // samples per side
 
 /// Finds the next crossing of a line with the planes `first + step k` of one axis.
 class PlaneWalk {
@@ -94,15 +94,17 @@ VolumeGrid::VolumeGrid(const std::array<int, 3>& size, std::vector<float> values
 
 void VolumeGrid::FindLargest() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    blocks_[axis] = (size_[axis] - 2) / kBlock + 1;
+    blocks_[axis] = (size_[axis] - 2) / kVolumeBlock + 1;
   }
   for (int bz = 0; bz < blocks_[2]; ++bz) {
     for (int by = 0; by < blocks_[1]; ++by) {
       for (int bx = 0; bx < blocks_[0]; ++bx) {
         float most = 0.0F;
-        for (int z = kBlock * bz; z <= std::min(kBlock * (bz + 1), size_[2] - 1); ++z) {
-          for (int y = kBlock * by; y <= std::min(kBlock * (by + 1), size_[1] - 1); ++y) {
-            for (int x = kBlock * bx; x <= std::min(kBlock * (bx + 1), size_[0] - 1); ++x) {
+        for (int z = kVolumeBlock * bz; z <= std::min(kVolumeBlock * (bz + 1), size_[2] - 1); ++z) {
+          for (int y = kVolumeBlock * by; y <= std::min(kVolumeBlock * (by + 1), size_[1] - 1);
+               ++y) {
+            for (int x = kVolumeBlock * bx; x <= std::min(kVolumeBlock * (bx + 1), size_[0] - 1);
+                 ++x) {
               most = std::max(most, values_[Index(x, y, z)]);
             }
           }
@@ -136,8 +138,8 @@ double VolumeGrid::At(const glm::dvec3& point) const {
 std::vector<DensePiece> VolumeGrid::PiecesAlong(const glm::dvec3& origin,
                                                 const glm::dvec3& direction, double begin_m,
                                                 double end_m) const {
-  const glm::dvec3 scale = glm::dvec3(size_[0], size_[1], size_[2]) / double{kBlock};
-  const glm::dvec3 from = origin * scale - 0.5 / kBlock;
+  const glm::dvec3 scale = glm::dvec3(size_[0], size_[1], size_[2]) / double{kVolumeBlock};
+  const glm::dvec3 from = origin * scale - 0.5 / kVolumeBlock;
   const glm::dvec3 slope = direction * scale;
   std::vector<DensePiece> pieces;
   WalkPlanes(from, slope, begin_m, end_m, [&](double a, double b) {
