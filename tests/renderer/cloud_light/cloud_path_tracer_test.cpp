@@ -17,6 +17,7 @@
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/reference/path_sampling.h"
 #include "atmosphere/reference/path_tracer.h"
+#include "renderer/cloud_light/droplet_phase.h"
 #include "renderer/layer.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/polarised_slab.h"
@@ -123,11 +124,12 @@ CloudEstimate FluxByPaths(const CloudPathTracer& tracer, double altitude_m, doub
   return MeanOf(flux);
 }
 
-TEST(CloudPaths, RadiancesOfConservativeCloudsSumToUnitFlux) {
+/// Expects that fluxes by radiances sum up to one and are those of photons.
+void ExpectUnitFlux(const CloudPhases& phases) {
   const CloudField field = tests::SphereClouds(0.05);
   const glm::dvec3 to_sun = Towards(35.0, 20.0);
-  const CloudPathTracer tracer(field, Droplets(), {to_sun});
-  const int paths = tests::ScaledDown(150000, 10000);
+  const CloudPathTracer tracer(field, {phases, 1.0}, {to_sun});
+  const int paths = tests::ScaledDown(100000, 10000);
   const CloudEstimate up = FluxByPaths(tracer, 1600.0, -1.0, to_sun.z, paths);
   const CloudEstimate down = FluxByPaths(tracer, 900.0, 1.0, to_sun.z, paths);
   const CloudFluxes fluxes = tracer.Fluxes(
@@ -135,10 +137,18 @@ TEST(CloudPaths, RadiancesOfConservativeCloudsSumToUnitFlux) {
   const double error =
       std::hypot(up.standard_error, down.standard_error, fluxes.mean.direct_at_base.standard_error);
   EXPECT_NEAR(up.value + down.value + fluxes.mean.direct_at_base.value, 1.0, 3.0 * error);
-  EXPECT_LT(error, tests::ScaledDown(0.005, 0.02)) << "the test must be able to fail";
+  EXPECT_LT(error, tests::ScaledDown(0.01, 0.04)) << "the test must be able to fail";
   ExpectWithin(up.value, fluxes.mean.up_at_top, 3.0, up.standard_error);
   ExpectWithin(down.value, fluxes.mean.down_at_base, 3.0, down.standard_error);
 }
+
+TEST(CloudPaths, RadiancesOfConservativeCloudsSumToUnitFlux) {
+  ExpectUnitFlux(CloudPhases(tests::LobeOf(0.85)));
+}
+
+// Fixed on 2026-11-29: light that droplets turn by a few degrees many times was in few paths with great
+// weights, so that means were too low.
+TEST(CloudPaths, RadiancesOfRealDropletsSumToUnitFlux) { ExpectUnitFlux(DropletPhases(550.0)); }
 
 TEST(CloudPaths, UniformSkyAndGroundAreAnEquilibrium) {
   constexpr double kGround = 0.3;
@@ -154,14 +164,16 @@ TEST(CloudPaths, UniformSkyAndGroundAreAnEquilibrium) {
   }
 }
 
-TEST(CloudPaths, LightOfEveryPathIsOneOverBlackGround) {
+TEST(CloudPaths, LightOfPathsIsOneOverBlackGround) {
   const CloudField field = tests::SphereClouds(0.08);
   const CloudPathTracer tracer(field, Droplets(), {});
-  for (std::size_t i = 0; i < 2000; ++i) {
+  std::vector<double> light;
+  for (std::size_t i = 0; i < tests::ScaledDown<std::size_t>(8000, 2000); ++i) {
     CloudPathTracer::PathRandom random(3, i, 0);
-    const CloudPathLight light = tracer.OnePath({{5.0, 6.0, 1200.0}, Towards(0.0, 77.0)}, random);
-    EXPECT_EQ(light.sky + light.ground, 1.0) << "a path ends in the sky or on the ground";
+    const CloudPathLight each = tracer.OnePath({{5.0, 6.0, 1200.0}, Towards(0.0, 77.0)}, random);
+    light.push_back(each.sky + each.ground);
   }
+  ExpectWithin(1.0, MeanOf(light), 3.0);
 }
 
 TEST(CloudPaths, GroundAndAbsorptionCloseTheEnergy) {
