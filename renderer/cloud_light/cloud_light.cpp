@@ -46,6 +46,17 @@ ScatteredByPart BesidePeak(const CloudScattered& traced, const CloudRay& ray,
   return light;
 }
 
+/// Returns the irradiance of ground below a field, and releases the light of which it is made.
+CloudFloor FloorBelow(const CloudField& field, const CloudCells& cells, double ground_altitude_m,
+                      SolvedCloudMoments& solved) {
+  const std::vector<CloudBaseLight> light = std::exchange(solved.through_base, {});
+  return {{{cells.count()[0], cells.count()[1]},
+           glm::dvec2(field.lattice().origin_m),
+           glm::dvec2(cells.cell_m())},
+          light,
+          field.base_altitude_m() - ground_altitude_m};
+}
+
 /// Returns a seed that differs between rays.
 std::uint64_t SeedOf(const CloudRay& ray, double length_m) {
   Fnv1a hash;
@@ -73,10 +84,12 @@ struct CloudLight::FieldLight {
       : field(&of),
         scatterers(by),
         ground_albedo(surroundings.ground_albedo),
+        ground_altitude_m(surroundings.ground_altitude_m),
         options(with),
         optics(std::make_shared<const CloudOptics>(of, by)),
         solver(of, optics, with.moments),
-        sky(solver.Sky()) {
+        sky(solver.Sky()),
+        floor(FloorBelow(of, solver.cells(), ground_altitude_m, sky)) {
     if (optics->albedo() < 1.0) ground.emplace(solver.Ground());
   }
 
@@ -88,11 +101,12 @@ struct CloudLight::FieldLight {
 
   const CloudField* field;
   CloudScatterers scatterers;
-  double ground_albedo;
+  double ground_albedo, ground_altitude_m;
   CloudLightOptions options;
   std::shared_ptr<const CloudOptics> optics;
   CloudMomentSolver solver;
   SolvedCloudMoments sky;
+  CloudFloor floor;  // of the sky
   std::optional<SolvedCloudMoments> ground;
 };
 
@@ -100,6 +114,7 @@ struct CloudLight::SunLight {
   SunLight(const FieldLight& light, const glm::dvec3& to_sun)
       : depths(*light.field, to_sun, light.options.sun_map, light.options.low_sun),
         moments(light.solver.Sun(depths)),
+        floor(FloorBelow(*light.field, light.solver.cells(), light.ground_altitude_m, moments)),
         gather(*light.field, *light.optics, depths, moments.moments, light.sky.moments,
                light.ground ? &light.ground->moments : nullptr, light.options.gather) {
     factor = FactorAfter(light, 0);
@@ -134,6 +149,7 @@ struct CloudLight::SunLight {
 
   CloudSunDepths depths;
   SolvedCloudMoments moments;
+  CloudFloor floor;
   CloudGather gather;  // refers to depths and moments
   CloudFactor factor;
   CloudGroundIrradiance irradiance;
@@ -191,6 +207,13 @@ CloudRayLights CloudLight::RadianceByBoth(const CloudRay& ray, double length_m) 
   return {fast, over_ground(BesidePeak(traced, ray, parts.scaled_transmittance))};
 }
 
+CloudGroundDifference CloudLight::GroundDifferenceAt(const glm::dvec3& point) const {
+  if (!field_light_->field->lattice().is_periodic) return {};
+  const glm::dvec2 place(point);
+  const CloudFloor &of_sun = sun_light_->floor, &of_sky = field_light_->floor;
+  return {of_sun.At(place) - of_sun.mean(), of_sky.At(place) - of_sky.mean()};
+}
+
 const CloudGroundIrradiance& CloudLight::ground_irradiance() const {
   return sun_light_->irradiance;
 }
@@ -205,7 +228,8 @@ const SolvedCloudMoments& CloudLight::sky_moments() const { return field_light_-
 std::size_t CloudLight::bytes() const {
   const std::size_t ground = field_light_->ground ? field_light_->ground->moments.bytes() : 0;
   return sun_light_->depths.bytes() + sun_light_->moments.moments.bytes() +
-         field_light_->sky.moments.bytes() + ground + field_light_->solver.bytes();
+         field_light_->sky.moments.bytes() + ground + field_light_->solver.bytes() +
+         sun_light_->floor.bytes() + field_light_->floor.bytes();
 }
 
 }  // namespace alpenglow::renderer

@@ -82,6 +82,13 @@ struct CloudGroundIrradiance {
   double ground = 0.0;   // for a ground that emits unit radiance, without its own emission
 };
 
+/// Irradiance of level ground at a place relative to the means of CloudGroundIrradiance, without light
+/// that goes to and fro.
+struct CloudGroundDifference {
+  double sun = 0.0;  // of sunlight from clouds, for unit irradiance across the beam
+  double sky = 0.0;  // for unit radiance of the sky
+};
+
 /// The light of a field under one sun. Immutable; safe to use from many threads. Copies share
 /// their tables. The field must outlive it.
 class CloudLight {
@@ -120,6 +127,13 @@ class CloudLight {
   /// Returns the mean irradiances of the ground below a periodic field; below an open one those
   /// without clouds.
   [[nodiscard]] const CloudGroundIrradiance& ground_irradiance() const;
+  /// Returns the difference of the diffuse light of level ground from its mean, below a point of a
+  /// periodic field; 0 for an open one. Light of the forward peak has its mean everywhere: droplets
+  /// turn it several times, and it follows the shadows of beams only by a tenth. On ground 120 m below
+  /// spheres the light is within 20 % (root mean square) of traced paths, the mean alone within 27 %.
+  /// @param point  in the frame of the field. Its light is that of the ground at
+  ///     CloudSurroundings::ground_altitude_m below or above it.
+  [[nodiscard]] CloudGroundDifference GroundDifferenceAt(const glm::dvec3& point) const;
   [[nodiscard]] const CloudField& field() const;
   [[nodiscard]] const CloudOptics& optics() const;
   [[nodiscard]] const CloudSunDepths& sun() const;

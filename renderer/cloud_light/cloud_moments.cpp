@@ -55,6 +55,7 @@ struct CloudTrack {
   std::vector<CloudTrackStep> steps;
   std::size_t shifts = 0;
   int first_line = 0, end_line = 0;
+  glm::dvec2 leaves_at_m{0.0};  // in the last cell, from its corner
 };
 
 /// Returns the steps from the plane where tracks enter to the other one. Tracks of different
@@ -91,6 +92,9 @@ CloudTrack TrackAlong(const CloudCells& cells, const glm::dvec3& travel, int num
     next_m[axis] += spacing_m[axis];
     cell[static_cast<std::size_t>(axis)] += travel[axis] > 0.0 ? 1 : -1;
   }
+  const CloudTrackStep& last = track.steps.back();
+  track.leaves_at_m =
+      glm::dvec2(origin_m + at_m * travel) - glm::dvec2(column, last.line) * glm::dvec2(cell_m);
   const int lines = cells.count()[1];
   track.first_line = cells.is_periodic() ? 0 : -most_line;
   track.end_line = cells.is_periodic() ? lines : lines - least_line;
@@ -250,6 +254,7 @@ class CloudMomentSolver::Grid {
   struct Swept {
     std::vector<CloudHarmonics> moments;
     double up_at_top = 0.0, down_at_base = 0.0;
+    std::vector<CloudBaseLight> through_base = {};  // of a periodic field, if light is everywhere
   };
   /// Returns the light that scattered light of `moments` and a source make along all tracks.
   /// @param moments  of at least all full cells, or null. @param source  or null.
@@ -267,8 +272,10 @@ class CloudMomentSolver::Grid {
   using DirectionValues = std::vector<std::vector<float>>;
   void FillSources(const CloudHarmonics* moments, const Source* source,
                    DirectionValues& values) const;
+  /// Returns the sum of the radiances with which tracks leave.
+  /// @param leaving  see CloudTrackWork.
   [[nodiscard]] double Follow(std::size_t direction, float entering, bool everywhere,
-                              std::vector<float>& values, TrackRoom& room) const;
+                              std::vector<float>& values, TrackRoom& room, float* leaving) const;
   [[nodiscard]] std::vector<CloudHarmonics> MomentsOf(const DirectionValues& values,
                                                       std::size_t count) const;
 
@@ -307,7 +314,8 @@ void CloudMomentSolver::Grid::FillSources(const CloudHarmonics* moments, const S
 }
 
 double CloudMomentSolver::Grid::Follow(std::size_t direction, float entering, bool everywhere,
-                                       std::vector<float>& values, TrackRoom& room) const {
+                                       std::vector<float>& values, TrackRoom& room,
+                                       float* leaving) const {
   const std::size_t lanes = extinction_per_m_.size();
   const CloudTrack& track = tracks_[direction];
   const auto columns = static_cast<std::size_t>(cells_->count()[0]);
@@ -341,11 +349,12 @@ double CloudMomentSolver::Grid::Follow(std::size_t direction, float entering, bo
                             .slope_per_m = slope_per_m,
                             .sum_m = sum_m,
                             .entering = entering,
-                            .track = room.track.data()};
-  const double leaving = Kernel<CloudTrackKernel>().follow(work, track.first_line, track.end_line);
+                            .track = room.track.data(),
+                            .leaving = leaving};
+  const double sum = Kernel<CloudTrackKernel>().follow(work, track.first_line, track.end_line);
   for (std::size_t cell = 0; cell < values.size(); ++cell) values[cell] = sum_m[cells_->Lane(cell)];
   std::fill_n(sum_m, lanes, 0.0F);
-  return leaving;
+  return sum;
 }
 
 std::vector<CloudHarmonics> CloudMomentSolver::Grid::MomentsOf(const DirectionValues& values,
@@ -373,15 +382,24 @@ CloudMomentSolver::Grid::Swept CloudMomentSolver::Grid::Sweep(const CloudHarmoni
   DirectionValues values(kDirections, std::vector<float>(count));
   FillSources(moments, source, values);
   std::vector<double> leaving(kDirections, 0.0);
+  std::vector<CloudBaseLight> through_base;
+  for (std::size_t d = 0; everywhere && cells_->is_periodic() && d < kDirections; ++d) {
+    if (directions_[d].travel.z >= 0.0) break;  // those downwards come first
+    const auto columns =
+        static_cast<std::size_t>(cells_->count()[0]) * static_cast<std::size_t>(cells_->count()[1]);
+    through_base.push_back({directions_[d].travel, directions_[d].solid_angle_sr,
+                            tracks_[d].leaves_at_m, std::vector<float>(columns)});
+  }
   tbb::enumerable_thread_specific<TrackRoom> rooms;
   tbb::parallel_for(std::size_t{0}, kDirections, [&](std::size_t d) {
     float entering = 0.0F;
     if (source != nullptr) {
       entering = directions_[d].travel.z < 0.0 ? source->from_above : source->from_below;
     }
-    leaving[d] = Follow(d, entering, everywhere, values[d], rooms.local());
+    float* each = d < through_base.size() ? through_base[d].radiance.data() : nullptr;
+    leaving[d] = Follow(d, entering, everywhere, values[d], rooms.local(), each);
   });
-  Swept swept{MomentsOf(values, count)};
+  Swept swept{.moments = MomentsOf(values, count), .through_base = std::move(through_base)};
   if (!cells_->is_periodic()) return swept;
   const double tracks = static_cast<double>(cells_->count()[0]) * cells_->count()[1];
   for (std::size_t d = 0; d < kDirections; ++d) {
@@ -406,8 +424,12 @@ SolvedCloudMoments CloudMomentSolver::Grid::Solve(const Source& source, const Cl
                       return Sweep(in.data(), nullptr, false).moments;
                     });
   Swept swept = Sweep(found.moments.data(), &source, true);
-  return {CloudMoments(cells_, std::move(swept.moments)), swept.up_at_top, swept.down_at_base,
-          found.applications + 2, found.residual};
+  return {CloudMoments(cells_, std::move(swept.moments)),
+          swept.up_at_top,
+          swept.down_at_base,
+          std::move(swept.through_base),
+          found.applications + 2,
+          found.residual};
 }
 
 CloudHarmonics CloudMoments::At(const glm::dvec3& point) const {

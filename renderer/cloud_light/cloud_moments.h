@@ -16,6 +16,8 @@
 // to the cell that it lies in, or to the nearest full one. A sun too low for a map is as high as over
 // the place everywhere; eight points in each cell stand for its beams.
 //
+// The radiances of the tracks that leave through the base light the ground (cloud_floor.h).
+//
 // Uniform light from above and below is an equilibrium of droplets that absorb nothing, so that the
 // light of a uniform ground is 1 less that of the sky. Absorbing ones need their own solution.
 #pragma once
@@ -27,6 +29,7 @@
 #include <vector>
 
 #include "renderer/cloud_light/cloud_cells.h"
+#include "renderer/cloud_light/cloud_floor.h"
 #include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/cloud_light/cloud_optics.h"
 
@@ -67,6 +70,9 @@ struct SolvedCloudMoments {
   /// sun's beam, or per unit radiance of sky or ground; 0 for an open field. Those of the sun are
   /// without light that is not scattered.
   double up_at_top = 0.0, down_at_base = 0.0;
+  /// Light through the base of a periodic field, without the light that droplets turn by a few
+  /// degrees and without light that is not scattered.
+  std::vector<CloudBaseLight> through_base = {};
   int sweeps = 0;         // on the finest grid
   double residual = 0.0;  // relative to the source
 };

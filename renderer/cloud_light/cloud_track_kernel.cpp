@@ -107,6 +107,11 @@ double Follow(const CloudTrackWork& work, int first, int end) {
     for (std::size_t column = 0; column < work.columns; ++column) {
       leaving += static_cast<double>(*tracks.At(column));
     }
+    if (work.leaving == nullptr) continue;
+    const int line = LineInField(work, entry + work.steps[work.step_count - 1].line);
+    if (line < 0) continue;
+    float* to = work.leaving + static_cast<std::size_t>(line) * work.columns;
+    for (std::size_t column = 0; column < work.columns; ++column) to[column] = *tracks.At(column);
   }
   return leaving;
 }

@@ -56,6 +56,8 @@ struct CloudTrackWork {
   float* sum_m;                    // the integral of the radiance along tracks is added
   float entering;                  // radiance of tracks where they enter the field
   float* track;                    // room for CloudTrackRoom() floats
+  /// Radiance of tracks where they leave, by line and column of their last cells; null: not wanted.
+  float* leaving = nullptr;
 };
 
 struct CloudTrackKernel {

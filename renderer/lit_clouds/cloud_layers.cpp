@@ -53,8 +53,11 @@ SolvedClouds CloudsByTime::Solved(double time_s, const glm::dvec3& to_light) con
   }
   solved.layers = std::make_shared<const CloudLayers>(CloudFieldsOf(scene_, time_s));
   for (const SceneCloudField& layer : *solved.layers) {
-    solved.light.emplace_back(layer.field, CloudScatterers{PhasesOf(layer)},
-                              CloudSurroundings{.to_sun = beam}, LightOptions(radius_m_));
+    solved.light.emplace_back(
+        layer.field, CloudScatterers{PhasesOf(layer)},
+        CloudSurroundings{.to_sun = beam,
+                          .ground_altitude_m = std::min(ground_m_, layer.field.base_altitude_m())},
+        LightOptions(radius_m_));
   }
   return solved;
 }

@@ -42,7 +42,7 @@ class CloudsByTime {
   /// @param ground_m  height of the ground at the scene's place above the ellipsoid.
   /// @param planet_radius_m  of the air of the scene.
   CloudsByTime(const Scene& scene, double ground_m, double planet_radius_m)
-      : scene_(scene), radius_m_(planet_radius_m) {
+      : scene_(scene), ground_m_(ground_m), radius_m_(planet_radius_m) {
     scene_.clouds = OverEllipsoid(scene_.clouds, ground_m);
   }
 
@@ -63,7 +63,7 @@ class CloudsByTime {
   [[nodiscard]] SolvedClouds Solved(double time_s, const glm::dvec3& to_light) const;
 
   Scene scene_;
-  double radius_m_;
+  double ground_m_, radius_m_;
   std::mutex asking_;
   std::deque<Made> made_;  // oldest first
 };

@@ -155,10 +155,10 @@ Spectrum LitClouds::MeanBeam(double altitude_m, std::size_t of_layer) const {
 void LitClouds::FindExchange() {
   const std::size_t bands = air_.bands();
   std::vector<CloudLayerFluxes> grey;
-  std::vector<Spectrum> beams;
   for (std::size_t i = 0; i < layers(); ++i) {
     grey.push_back(FluxesOf(Layer(i)));
-    beams.push_back(MeanBeam(MiddleOf(i), i));
+    beams_.push_back(MeanBeam(MiddleOf(i), i));
+    sky_past_.push_back(static_cast<float>(grey.back().sky_down));
   }
   const std::vector<Spectrum> no_beams(layers(), Spectrum(bands));
   const double top_m = shadow_->highest_cloud_m();
@@ -178,7 +178,7 @@ void LitClouds::FindExchange() {
     const double albedo = air_.medium().ground_albedo[band];
     const auto from_sky = static_cast<double>(sky[band]);
     const auto on_ground = static_cast<double>(direct[band]);
-    const auto lit = LitBy(grey, beams, band), unlit = LitBy(grey, no_beams, band);
+    const auto lit = LitBy(grey, beams_, band), unlit = LitBy(grey, no_beams, band);
     const auto all = FluxesBetween(lit, {from_sky, on_ground}, albedo);
     const auto of_sky = FluxesBetween(unlit, {.sky = 1.0}, albedo);
     const auto of_sun = FluxesBetween(lit, {.direct_on_ground = on_ground}, albedo);
@@ -235,12 +235,32 @@ std::vector<DiffuseStretch> LitClouds::DiffuseInAir(const glm::dvec3& origin,
   return stretches;
 }
 
-SkyThroughMedia LitClouds::SkyOnSurface(double altitude_m, double cos_up,
+SkyThroughMedia LitClouds::SkyAt(std::size_t interface, const glm::dvec3& point) const {
+  SkyThroughMedia sky{sky_left_[interface], sun_added_[interface]};
+  if (interface == layers()) return sky;
+  const glm::dvec3 flat = InFlatFrame(point, geometry_.radius_m());
+  float past_lower = 1.0F, past_all = 1.0F;
+  for (std::size_t i = interface; i < layers(); ++i) past_all *= sky_past_[i];
+  for (std::size_t i = interface; i < layers(); ++i) {
+    const CloudGroundDifference here = Layer(i).GroundDifferenceAt(flat);
+    const float past_others = sky_past_[i] > 0.0F ? past_all / sky_past_[i] : 0.0F;
+    const float of_sky = past_others * static_cast<float>(here.sky / kPi);
+    const float of_sun = past_lower * static_cast<float>(here.sun);
+    for (std::size_t band = 0; band < sky.left.size(); ++band) {
+      sky.left[band] = std::max(sky.left[band] + of_sky, 0.0F);
+      sky.added[band] = std::max(sky.added[band] + of_sun * beams_[i][band], 0.0F);
+    }
+    past_lower *= sky_past_[i];
+  }
+  return sky;
+}
+
+SkyThroughMedia LitClouds::SkyOnSurface(const glm::dvec3& point, double cos_up,
                                         SkyThroughMedia above) const {
-  const std::size_t interface = InterfaceAt(altitude_m);
+  const SkyThroughMedia level = SkyAt(InterfaceAt(geometry_.AltitudeOf(point)), point);
   const auto seen = static_cast<float>(0.5 * (1.0 + cos_up));
-  above.added = sky_left_[interface] * above.added + seen * sun_added_[interface];
-  above.left = sky_left_[interface] * above.left;
+  above.added = level.left * above.added + seen * level.added;
+  above.left = level.left * above.left;
   return above;
 }
 

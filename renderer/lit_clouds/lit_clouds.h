@@ -26,7 +26,8 @@
 //
 // Not modelled:
 //
-//   - skylight and light from the ground that differ with direction or place under a field;
+//   - skylight and light from the ground that differ with direction or place, where they light clouds
+//     and air;
 //   - lamplight that the ground reflects to clouds, and the air between clouds and towns of light
 //     pollution (NightAlong);
 //   - clouds in the mirror of water, which shows the clear sky;
@@ -149,10 +150,11 @@ class LitClouds {
   [[nodiscard]] const CloudShadow& shadow() const { return *shadow_; }
 
   /// Returns the skylight on a surface: layers above it dim the light of the clear sky and add
-  /// sunlight that they scatter. Both are means over the fields.
-  /// @param cos_up  between the surface's normal and the vertical. @param above  what arrives from
-  ///     above all layers.
-  [[nodiscard]] SkyThroughMedia SkyOnSurface(double altitude_m, double cos_up,
+  /// sunlight that they scatter, which differs from place to place as on level ground at the place of
+  /// the scene. Light that goes to and fro between ground and layers has its mean everywhere.
+  /// @param point  in the frame of the scene. @param cos_up  between the surface's normal and the
+  ///     vertical. @param above  what arrives from above all layers.
+  [[nodiscard]] SkyThroughMedia SkyOnSurface(const glm::dvec3& point, double cos_up,
                                              SkyThroughMedia above) const;
 
   /// Returns the diffuse light in the air along a ray, below, between and above layers, relative to
@@ -175,6 +177,8 @@ class LitClouds {
 
   [[nodiscard]] std::size_t layers() const { return clouds_->light.size(); }
   [[nodiscard]] const CloudLight& Layer(std::size_t layer) const { return clouds_->light[layer]; }
+  /// Returns SkyOnSurface of level ground below an interface.
+  [[nodiscard]] SkyThroughMedia SkyAt(std::size_t interface, const glm::dvec3& point) const;
   /// Returns the altitudes of a layer.
   [[nodiscard]] AltitudeRange RangeOf(std::size_t layer) const;
   /// Returns the altitude that parts the light below a layer from that above it.
@@ -194,6 +198,8 @@ class LitClouds {
   /// Light below each interface: per unit skylight from above all layers, and by the sun's beam
   /// alone, per unit solar irradiance.
   std::vector<Spectrum> sky_left_, sun_added_;
+  std::vector<Spectrum> beams_;    // mean ones on each layer, per unit solar irradiance
+  std::vector<float> sky_past_;    // transmittance of each layer for skylight
   std::vector<Spectrum> diffuse_;  // factor in the air at each interface
 };
 

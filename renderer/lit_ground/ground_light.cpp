@@ -111,7 +111,7 @@ Spectrum GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
   const bool has_clouds = from.clouds != nullptr && light.effects.Has(Effect::kCloudGlow);
   if (from.media == nullptr && !has_clouds) return clear;
   SkyThroughMedia sky = SkyThroughMedia::Clear(air_.bands());
-  if (has_clouds) sky = from.clouds->SkyOnSurface(sun.altitude_m, normal_mu, sky);
+  if (has_clouds) sky = from.clouds->SkyOnSurface(hit.point, normal_mu, sky);
   if (from.media != nullptr) sky = from.media->SkyOnSurface(sun.altitude_m, normal_mu, sky);
   return sky.left * clear + sky.added;
 }

@@ -26,7 +26,7 @@ const glm::dvec3 kHighSun = glm::normalize(glm::dvec3(0.766, 0.0, 0.643));
 
 /// Clouds over the bare planet in air of three bands, under a sun 40 degrees high or another one.
 struct CloudStage {
-  explicit CloudStage(CloudField field, const glm::dvec3& to_sun = kHighSun)
+  explicit CloudStage(CloudField field, const glm::dvec3& to_sun = kHighSun, double ground_m = 0.0)
       : sun(SunOf(air, to_sun)), clouds([&] {
           auto layers = std::make_shared<CloudLayers>();
           layers->push_back({std::move(field), false});
@@ -34,9 +34,10 @@ struct CloudStage {
           CloudLightOptions options;
           options.factor.rays = 0;
           options.low_sun.farthest_m = kFarthestCloudShade_m;
-          solved->light.emplace_back(layers->front().field,
-                                     CloudScatterers{CloudPhases(tests::LobeOf(0.8))},
-                                     CloudSurroundings{.to_sun = sun.direction.seen}, options);
+          solved->light.emplace_back(
+              layers->front().field, CloudScatterers{CloudPhases(tests::LobeOf(0.8))},
+              CloudSurroundings{.to_sun = sun.direction.seen, .ground_altitude_m = ground_m},
+              options);
           solved->layers = layers;
           return solved;
         }()) {}
@@ -100,7 +101,8 @@ TEST(LitClouds, ScreenStandsInTheLayerAndIsLit) {
 TEST(LitClouds, LightOnTheGroundIsThatOfTheDeckAbove) {
   const CloudStage& stage = DeckStage();
   const LitClouds lit = stage.Lit();
-  const SkyThroughMedia sky = lit.SkyOnSurface(0.0, 1.0, SkyThroughMedia::Clear(stage.air.bands()));
+  const SkyThroughMedia sky =
+      lit.SkyOnSurface({0.0, 0.0, 0.0}, 1.0, SkyThroughMedia::Clear(stage.air.bands()));
   const Spectrum clear =
       stage.air.multiple_scattering().Irradiance(1400.0, stage.sun.direction.for_air.z, 1.0, 1.0);
   const GaussRule& rule = GaussLegendre(6);
@@ -153,6 +155,22 @@ CloudField HighClouds() {
   return {lattice, HighSpheres(), tests::EvenMatter(0.05, 20.0)};
 }
 
+/// Returns the mean skylight on level ground below a periodic field.
+SkyThroughMedia MeanSkyOnGround(const CloudStage& stage) {
+  constexpr int kPlaces = 256;
+  const LitClouds lit = stage.Lit();
+  const glm::dvec2 size(stage.clouds->layers->front().field.lattice().size_m());
+  SkyThroughMedia mean{Spectrum(stage.air.bands()), Spectrum(stage.air.bands())};
+  for (int i = 1; i <= kPlaces; ++i) {
+    const glm::dvec3 place(size.x * Halton(i, 2), size.y * Halton(i, 3), 0.0);
+    const SkyThroughMedia sky =
+        lit.SkyOnSurface(place, 1.0, SkyThroughMedia::Clear(stage.air.bands()));
+    mean.left = mean.left + 1.0F / kPlaces * sky.left;
+    mean.added = mean.added + 1.0F / kPlaces * sky.added;
+  }
+  return mean;
+}
+
 /// Returns the mean light of the spheres, seen from below.
 Spectrum GlowOfSpheres(const CloudStage& stage) {
   const LitClouds lit = stage.Lit();
@@ -171,8 +189,7 @@ TEST(LitClouds, CloudsGlowRedFromBelowAfterSunset) {
   const CloudStage dark(HighClouds(), SunOverClouds(-2.9));
   const Spectrum glow = GlowOfSpheres(glowing), shade = GlowOfSpheres(dark);
   EXPECT_GT(glow[2], 3.0F * shade[2]) << "the reddest band";
-  const SkyThroughMedia on_ground =
-      glowing.Lit().SkyOnSurface(0.0, 1.0, SkyThroughMedia::Clear(glowing.air.bands()));
+  const SkyThroughMedia on_ground = MeanSkyOnGround(glowing);
   EXPECT_GT(on_ground.added[2], 0.0F);
   EXPECT_LT(glowing.Blueness(on_ground.added), 0.1) << "light of clouds on the ground";
 }
@@ -197,6 +214,35 @@ LightOnGround LightUnder(const SolvedAir& air, const SkyThroughMedia& sky, doubl
   return {diffuse, diffuse + static_cast<float>(sine * direct_left) * air.BeamLeft(0.0, sine)};
 }
 
+// The sun's beam at the clouds gives the light its colour, and the ground is 100 m below them.
+TEST(LitClouds, LightOnTheGroundDiffersByPlace) {
+  const CloudStage stage(tests::SphereClouds(0.05), kHighSun, 900.0);
+  const LitClouds lit = stage.Lit();
+  const SkyThroughMedia clear = SkyThroughMedia::Clear(stage.air.bands());
+  const Spectrum beam = stage.air.BeamLeft(1240.0, kHighSun.z);
+  const auto difference_at = [&](const glm::dvec3& place) {
+    return stage.clouds->light.front().GroundDifferenceAt(place);
+  };
+  const glm::dvec3 first(30.0, 40.0, 900.0);
+  const SkyThroughMedia at_first = lit.SkyOnSurface(first, 1.0, clear);
+  double most = 0.0;
+  for (int i = 1; i <= 40; ++i) {
+    const glm::dvec3 place(1280.0 * Halton(i, 2), 1280.0 * Halton(i, 3), 900.0);
+    const SkyThroughMedia sky = lit.SkyOnSurface(place, 1.0, clear);
+    const double sun = difference_at(place).sun - difference_at(first).sun;
+    const double of_sky = (difference_at(place).sky - difference_at(first).sky) / kPi;
+    most = std::max(most, std::abs(sun));
+    for (std::size_t band = 0; band < stage.air.bands(); ++band) {
+      EXPECT_NEAR(static_cast<double>(sky.left[band] - at_first.left[band]), of_sky, 1e-4)
+          << "the flat frame moves places by 0.2 m";
+      const double expected = sun * static_cast<double>(beam[band]);
+      EXPECT_NEAR(static_cast<double>(sky.added[band] - at_first.added[band]), expected, 0.002)
+          << "the beam at the middle of the field";
+    }
+  }
+  EXPECT_GT(most, 0.02) << "the test must be able to fail";
+}
+
 // Droplets scatter all colours alike: under a closing deck all light falls, and the light of the sky
 // loses its blue. The air below the deck scatters this light.
 TEST(LitClouds, LightFallsAndTurnsGreyWithCover) {
@@ -210,7 +256,7 @@ TEST(LitClouds, LightFallsAndTurnsGreyWithCover) {
     options.period_m = kPeriodStep_m;
     const CloudStage stage(MakeCloudField(options));
     const LitClouds lit = stage.Lit();
-    const LightOnGround light = LightUnder(air, lit.SkyOnSurface(0.0, 1.0, clear),
+    const LightOnGround light = LightUnder(air, MeanSkyOnGround(stage),
                                            stage.clouds->light.front().sun().MeanTransmittance());
     EXPECT_LT(light.all[1], last.all[1]) << cover;
     EXPECT_LT(stage.Blueness(light.sky), stage.Blueness(last.sky)) << cover;
@@ -240,7 +286,7 @@ TEST(LitClouds, AirHasTheLightOfItsSideOfTheLayer) {
 TEST(LitClouds, SurfacesAboveTheLayerKeepTheClearSky) {
   const CloudStage& stage = DeckStage();
   const SkyThroughMedia clear = SkyThroughMedia::Clear(stage.air.bands());
-  const SkyThroughMedia sky = stage.Lit().SkyOnSurface(2000.0, 1.0, clear);
+  const SkyThroughMedia sky = stage.Lit().SkyOnSurface({0.0, 0.0, 2000.0}, 1.0, clear);
   for (std::size_t band = 0; band < stage.air.bands(); ++band) {
     EXPECT_EQ(sky.left[band], 1.0F);
     EXPECT_EQ(sky.added[band], 0.0F);
