@@ -99,7 +99,7 @@ TEST(CloudPaths, PlaneLayerHasTheRadianceOfThePathTracerOfTheAir) {
         LayerOfAir(kDepth, kGround, kG), ray, {.relative_error = tests::ScaledDown(0.01, 0.04)});
     const CloudRadiance found =
         tracer.Radiance({{10.0, 20.0, look.z < 0.0 ? 2000.0 : 0.0}, look},
-                        {.paths = tests::ScaledDown<std::size_t>(60000, 8000)});
+                        {.paths = tests::ScaledDown<std::size_t>(20000, 6000)});
     ExpectWithin(expected.total[0], found.sun, 3.0, expected.standard_error[0]);
   }
 }
@@ -129,7 +129,7 @@ void ExpectUnitFlux(const CloudPhases& phases) {
   const CloudField field = tests::SphereClouds(0.05);
   const glm::dvec3 to_sun = Towards(35.0, 20.0);
   const CloudPathTracer tracer(field, {phases, 1.0}, {to_sun});
-  const int paths = tests::ScaledDown(100000, 10000);
+  const int paths = tests::ScaledDown(50000, 8000);
   const CloudEstimate up = FluxByPaths(tracer, 1600.0, -1.0, to_sun.z, paths);
   const CloudEstimate down = FluxByPaths(tracer, 900.0, 1.0, to_sun.z, paths);
   const CloudFluxes fluxes = tracer.Fluxes(
@@ -137,7 +137,7 @@ void ExpectUnitFlux(const CloudPhases& phases) {
   const double error =
       std::hypot(up.standard_error, down.standard_error, fluxes.mean.direct_at_base.standard_error);
   EXPECT_NEAR(up.value + down.value + fluxes.mean.direct_at_base.value, 1.0, 3.0 * error);
-  EXPECT_LT(error, tests::ScaledDown(0.01, 0.04)) << "the test must be able to fail";
+  EXPECT_LT(error, tests::ScaledDown(0.015, 0.04)) << "the test must be able to fail";
   ExpectWithin(up.value, fluxes.mean.up_at_top, 3.0, up.standard_error);
   ExpectWithin(down.value, fluxes.mean.down_at_base, 3.0, down.standard_error);
 }
@@ -300,7 +300,7 @@ CloudEstimate MeanReflected(const CloudField& field, const glm::dvec3& to_eye,
                             const glm::dvec3& to_sun) {
   const CloudPathTracer tracer(field, Droplets(), {to_sun});
   std::vector<double> radiance;
-  for (int i = 1; i <= tests::ScaledDown(150000, 15000); ++i) {
+  for (int i = 1; i <= tests::ScaledDown(60000, 8000); ++i) {
     CloudPathTracer::PathRandom random(19, static_cast<std::uint64_t>(i), 0);
     const double x_m = tests::SphereShape::kPeriod_m * Halton(i, 2);
     const double y_m = tests::SphereShape::kPeriod_m * Halton(i, 3);
@@ -315,14 +315,14 @@ TEST(CloudPaths, SunAndEyeCanBeExchanged) {
   const CloudEstimate one = MeanReflected(field, high, low);
   const CloudEstimate other = MeanReflected(field, low, high);
   ExpectWithin(one.value, other, 3.0, one.standard_error);
-  EXPECT_LT(one.standard_error, tests::ScaledDown(0.04, 0.12) * one.value);
+  EXPECT_LT(one.standard_error, tests::ScaledDown(0.06, 0.16) * one.value);
 }
 
 TEST(CloudPaths, StandardErrorsHold) {
   const CloudField field = tests::SphereClouds(0.02);
   const CloudPathTracer tracer(field, Droplets(), {Towards(35.0, 20.0), 0.3});
   const CloudRay ray{{330.0, -300.0, 900.0}, Towards(28.0, 90.0)};
-  const std::size_t repeats = tests::ScaledDown<std::size_t>(200, 40);
+  const std::size_t repeats = tests::ScaledDown<std::size_t>(100, 40);
   std::vector<CloudRadiance> found;
   CloudRadiance mean{};
   for (std::size_t i = 0; i < repeats; ++i) {
@@ -339,10 +339,10 @@ TEST(CloudPaths, StandardErrorsHold) {
       const double error = std::abs((light.*member).value - (mean.*member).value);
       within += error <= 2.0 * (light.*member).standard_error ? 1 : 0;
     }
-    // Errors from 16 batches follow Student's law: 93.6 % are within two. Of 200 repeats the share
-    // is 0.936 +- 0.017, of 40 +- 0.039.
+    // Errors from 16 batches follow Student's law: 93.6 % are within two. Of 100 repeats the share
+    // is 0.936 +- 0.024, of 40 +- 0.039.
     const double share = static_cast<double>(within) / static_cast<double>(repeats);
-    EXPECT_NEAR(share, 0.936, tests::ScaledDown(0.055, 0.13));
+    EXPECT_NEAR(share, 0.936, tests::ScaledDown(0.075, 0.13));
   }
 }
 
