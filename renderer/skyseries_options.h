@@ -242,9 +242,9 @@ inline void AddRayOptions(CLI::App& app, PictureOptionTexts& texts) {
       ->check(CLI::IsMember(PixelFilterNames()))
       ->capture_default_str();
   app.add_option("--cloud-light", texts.cloud_light,
-                 "Light in clouds: fast (by the table of a solution, without noise), hybrid (64 "
-                 "paths a ray, which end in the table after 2 collisions) or traced (64 paths a "
-                 "ray, exact but for their noise)")
+                 "Light in clouds: fast (by the table of a solution, without noise), hybrid (16 "
+                 "paths a pixel, which end in the table after 2 collisions) or traced (64 paths a "
+                 "pixel, exact but for their noise)")
       ->check(CLI::IsMember(CloudLightMethodNames()))
       ->excludes(app.get_option("--paths"))
       ->capture_default_str();

@@ -34,8 +34,8 @@ constexpr CloudRaster kRaster{16, 9};
 // Rays are followed again to measure their time.
 constexpr int kRepeats = 50;
 // True collisions and paths of rays; without collisions all are true ones.
-constexpr std::array<CloudHybridOptions, 4> kPaths{
-    {{2, 64}, {2, 128}, {8, 128}, {std::nullopt, 64}}};
+constexpr std::array<CloudHybridOptions, 5> kPaths{
+    {{2, 16}, {2, 64}, {2, 128}, {8, 128}, {std::nullopt, 64}}};
 
 struct StudyPixel {
   std::size_t view;
