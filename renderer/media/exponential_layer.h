@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "atmosphere/lamp/lamp.h"  // LayerLogDensity of the shared text
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
 #include "renderer/media/local_medium.h"
