@@ -17,9 +17,9 @@
 #include <array>
 #include <cstddef>
 
-#include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/cloud_light/cloud_moments.h"
 #include "renderer/cloud_light/cloud_optics.h"
+#include "renderer/cloud_light/cloud_sun_depths.h"
 #include "renderer/cloud_light/cloud_tracking.h"
 #include "renderer/clouds/cloud_field.h"
 

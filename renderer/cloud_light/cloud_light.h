@@ -29,10 +29,10 @@
 #include "renderer/cloud_light/cloud_factor.h"
 #include "renderer/cloud_light/cloud_gather.h"
 #include "renderer/cloud_light/cloud_hybrid.h"
-#include "renderer/cloud_light/cloud_low_sun.h"
 #include "renderer/cloud_light/cloud_moments.h"
 #include "renderer/cloud_light/cloud_optics.h"
 #include "renderer/cloud_light/cloud_path_tracer.h"
+#include "renderer/cloud_light/cloud_sun_depths.h"
 #include "renderer/clouds/cloud_field.h"
 
 namespace alpenglow::renderer {

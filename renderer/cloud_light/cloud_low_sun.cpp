@@ -2,15 +2,11 @@
 #include "renderer/cloud_light/cloud_low_sun.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <numeric>
-#include <vector>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/math/numerics.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -34,10 +30,6 @@ double LowElevation_rad(const glm::dvec3& to_sun) {
                     elevation_deg, kLowestCloudLight_deg, kHighestLowSun_deg));
   }
   return elevation_rad;
-}
-
-bool IsLow(const glm::dvec3& to_sun) {
-  return to_sun.z < std::sin(kLowestCloudSun_deg * kRadiansPerDegree);
 }
 
 }  // namespace
@@ -65,7 +57,7 @@ glm::dvec3 CloudLowSun::ToSunAt(const glm::dvec3& point) const {
   return {std::cos(elevation_rad) * azimuth_, std::sin(elevation_rad)};
 }
 
-CloudLowSun::Interval CloudLowSun::Below(double altitude_m, double slope) const {
+CloudBeam::Part CloudLowSun::Below(double altitude_m, double slope) const {
   const double square = slope * slope + 2.0 * per_radius_ * altitude_m;
   if (square <= 0.0) return {0.0, 0.0};
   // One root is the quotient of the other by their product, without cancellation.
@@ -74,18 +66,24 @@ CloudLowSun::Interval CloudLowSun::Below(double altitude_m, double slope) const 
   return {std::max(0.0, std::min(one_m, other_m)), std::max(0.0, std::max(one_m, other_m))};
 }
 
-CloudLowSun::Beam CloudLowSun::BeamFrom(const glm::dvec3& point, double slope) const {
-  const Interval layer = Below(high_m_ - point.z, slope), gap = Below(low_m_ - point.z, slope);
-  const double last_m = std::min(layer.end_m, farthest_m_);
-  if (gap.begin_m >= gap.end_m) return {point, slope, {layer.begin_m, last_m}, {0.0, 0.0}, 0.0};
-  const Interval returned{std::max(gap.end_m, layer.begin_m), last_m};
-  const double left_m = farthest_m_ - returned.begin_m;
-  const double share =
-      returned.begin_m <= full_m_ ? 1.0 : std::max(0.0, left_m / (farthest_m_ - full_m_));
-  return {point, slope, {layer.begin_m, std::min(gap.begin_m, last_m)}, returned, share};
+CloudBeam CloudLowSun::BeamFrom(const glm::dvec3& point, double slope) const {
+  const CloudBeam::Part layer = Below(high_m_ - point.z, slope);
+  const CloudBeam::Part gap = Below(low_m_ - point.z, slope);
+  CloudBeam beam{point, azimuth_, slope, per_radius_, layer, {0.0, 0.0}, 0.0};
+  if (!gap.is_empty()) {
+    beam.first.end_m = std::min(gap.begin_m, layer.end_m);
+    beam.returned = {std::max(gap.end_m, layer.begin_m), layer.end_m};
+    const double left_m = farthest_m_ - beam.returned.begin_m;
+    if (left_m > 0.0) {
+      beam.returning =
+          beam.returned.begin_m <= full_m_ ? 1.0 : std::min(1.0, left_m / (farthest_m_ - full_m_));
+    }
+  }
+  if (beam.first.begin_m >= farthest_m_) beam.first = {0.0, 0.0};
+  return beam;
 }
 
-double CloudLowSun::OpticalDepthOf(const Beam& beam, const Interval& part,
+double CloudLowSun::OpticalDepthOf(const CloudBeam& beam, const CloudBeam::Part& part,
                                    double most_depth) const {
   double depth = 0.0;
   EachChord(beam, part, [&](const CloudRay& ray, double length_m) {
@@ -104,47 +102,11 @@ double CloudLowSun::OpticalDepthOf(const Beam& beam, const Interval& part,
   return depth;
 }
 
-double CloudLowSun::OpticalDepth(const glm::dvec3& point, double slope, double most_depth) const {
-  const Beam beam = BeamFrom(point, slope);
-  double depth = OpticalDepthOf(beam, beam.first, most_depth);
-  if (depth < most_depth && beam.returning > 0.0) {
-    const double crossing = OpticalDepthOf(beam, beam.returned, most_depth - depth);
-    depth += beam.returning < 1.0 ? -std::log1p(beam.returning * std::expm1(-crossing)) : crossing;
-  }
-  return std::min(depth, most_depth);
+double CloudLowSun::OpticalDepth(const glm::dvec3& point, double slope) const {
+  const CloudBeam beam = BeamFrom(point, slope);
+  const double first = OpticalDepthOf(beam, beam.first);
+  return WithReturned(beam, first,
+                      [&] { return OpticalDepthOf(beam, beam.returned, kDeepest - first); });
 }
-
-CloudSunDepths::CloudSunDepths(const CloudField& field, const glm::dvec3& to_sun,
-                               const CloudSunMapOptions& map_options,
-                               const CloudLowSunOptions& low_options)
-    : field_(&field), sun_([&]() -> std::variant<CloudSunMap, CloudLowSun> {
-        if (IsLow(to_sun)) return CloudLowSun(field, to_sun, low_options);
-        return CloudSunMap(field, to_sun, map_options);
-      }()) {}
-
-double CloudSunDepths::OpticalDepth(const glm::dvec3& point) const {
-  return map() ? OpticalDepthToSun(*field_, *map(), point) : low_sun()->OpticalDepth(point);
-}
-
-double CloudSunDepths::Transmittance(const glm::dvec3& point) const {
-  return map() ? map()->Transmittance(point) : std::exp(-low_sun()->OpticalDepth(point));
-}
-
-double CloudSunDepths::MeanTransmittance(double altitude_m) const {
-  if (map()) return altitude_m < field_->top_altitude_m() ? map()->MeanTransmittance() : 1.0;
-  constexpr int kBeams = 4096;
-  const CloudLattice& lattice = field_->lattice();
-  std::vector<double> left(kBeams);
-  tbb::parallel_for(0, kBeams, [&](int i) {
-    const glm::dvec2 place =
-        glm::dvec2(lattice.origin_m) +
-        glm::dvec2(lattice.size_m()) * glm::dvec2(Halton(i + 1, 2), Halton(i + 1, 3));
-    left[static_cast<std::size_t>(i)] =
-        std::exp(-low_sun()->OpticalDepthAsAtPlace({place, altitude_m}));
-  });
-  return std::accumulate(left.begin(), left.end(), 0.0) / kBeams;
-}
-
-std::size_t CloudSunDepths::bytes() const { return map() ? map()->bytes() : 0; }
 
 }  // namespace alpenglow::renderer

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Optical depth from any point to a sun near the horizon, over a round planet.
 //
-// A sun below 3 degrees needs no map: its beams stay in a layer of clouds for tens of kilometres and
-// pass a field many times, so that neighbouring points have little in common. Each beam is followed
-// instead. At the distance s along the ground from a point of altitude z, where the sun stands at the
+// Beams of a sun below 3 degrees stay in a layer of clouds for tens of kilometres and pass a field many
+// times. At the distance s along the ground from a point of altitude z, where the sun stands at the
 // elevation e, the altitude of its beam is
 //
 //   z(s) = z + s tan e + s^2 / (2 R)
@@ -43,10 +42,34 @@ struct CloudLowSunOptions {
   glm::dvec2 place_m{0.0};           // where the sun has the given direction
   double planet_radius_m = 6.371e6;  // in [1e5, 1e9]; 7/6 of it for rays in refracting air
   double step_m = 20.0;              // in cloud, in [1, 100]; up to four times as long far away
-  /// Distance along the ground beyond which clouds do not shade, in [1e3, 4e5]. The share of beams
-  /// that meet clouds when they return falls from one at `full_m` to none there.
+  /// Distance along the ground beyond which beams that enter the layer meet no clouds, in [1e3, 4e5].
+  /// The share of beams that meet clouds when they return falls from one at `full_m` to none there.
   double farthest_m = 4e5;
-  double full_m = 4e5;  // in [0, 4e5]; from farthest_m on, beams end sharply
+  double full_m = 4e5;  // in [0, 4e5]; from farthest_m on, the share falls sharply
+};
+
+/// The way of light from the sun to a point, seen from there: a parabola, by the distance along the
+/// ground.
+struct CloudBeam {
+  /// A part of the beam; empty if end_m <= begin_m.
+  struct Part {
+    double begin_m, end_m;
+
+    [[nodiscard]] bool is_empty() const { return end_m <= begin_m; }
+  };
+
+  [[nodiscard]] glm::dvec3 At(double distance_m) const {
+    return {glm::dvec2(from) + distance_m * azimuth,
+            from.z + distance_m * (slope + 0.5 * distance_m * per_radius)};
+  }
+  [[nodiscard]] double SlopeAt(double distance_m) const { return slope + distance_m * per_radius; }
+
+  glm::dvec3 from;
+  glm::dvec2 azimuth;  // unit vector to the sun on the ground
+  double slope;        // at the point
+  double per_radius;
+  Part first, returned;  // between the altitudes of the field
+  double returning;      // share of beams that meet clouds when they return
 };
 
 /// Immutable; safe to use from many threads. The field must outlive it.
@@ -61,24 +84,48 @@ class CloudLowSun {
   /// Returns the unit vector to the sun from the place, and from a point.
   [[nodiscard]] const glm::dvec3& to_sun() const { return to_sun_; }
   [[nodiscard]] glm::dvec3 ToSunAt(const glm::dvec3& point) const;
+  /// Returns the tangent of the sun's elevation at the place, and at a point.
+  [[nodiscard]] double slope() const { return std::tan(elevation_rad_); }
+  [[nodiscard]] double SlopeAt(const glm::dvec3& point) const {
+    return std::tan(ElevationAt_rad(point));
+  }
+  /// Returns the same at a distance from the place towards the sun.
+  [[nodiscard]] double SlopeAfter(double distance_m) const {
+    return std::tan(elevation_rad_ + distance_m * per_radius_);
+  }
+  [[nodiscard]] const glm::dvec2& azimuth() const { return azimuth_; }
+  [[nodiscard]] double per_radius() const { return per_radius_; }
+  [[nodiscard]] double farthest_m() const { return farthest_m_; }
 
   /// Returns the optical depth from a point to the sun, at most kDeepest: where it is reached, the
   /// beam ends.
   [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const {
-    return OpticalDepth(point, SlopeAt(point), kDeepest);
+    return OpticalDepth(point, SlopeAt(point));
   }
   /// Returns the same as if the sun were as high as over the place, so that a periodic field has
-  /// periodic light; at most kDeepestMean.
+  /// periodic light.
   [[nodiscard]] double OpticalDepthAsAtPlace(const glm::dvec3& point) const {
-    return OpticalDepth(point, std::tan(elevation_rad_), kDeepestMean);
+    return OpticalDepth(point, slope());
   }
+  /// Returns the same for a slope of the beam at the point.
+  [[nodiscard]] double OpticalDepth(const glm::dvec3& point, double slope) const;
 
   /// Returns an unbiased estimate of the transmittance along the same beam.
   /// @param random  has Next(), uniform in [0, 1).
   template <typename Random>
   [[nodiscard]] double Transmittance(const glm::dvec3& point, Random& random) const;
 
-  static constexpr double kDeepest = 32.0, kDeepestMean = 12.0;
+  static constexpr double kDeepest = 32.0;
+
+  [[nodiscard]] CloudBeam BeamFrom(const glm::dvec3& point, double slope) const;
+  /// Returns the optical depth of a part of a beam; it ends where `most_depth` is reached.
+  [[nodiscard]] double OpticalDepthOf(const CloudBeam& beam, const CloudBeam::Part& part,
+                                      double most_depth = kDeepest) const;
+  /// Returns the optical depth of a beam from those of its parts. @param returned  returns that of
+  /// the returned part; it is called only where this matters.
+  template <typename Returned>
+  [[nodiscard]] static double WithReturned(const CloudBeam& beam, double first,
+                                           const Returned& returned);
 
  private:
   static constexpr double kChord_m = 2000.0;
@@ -86,33 +133,14 @@ class CloudLowSun {
   [[nodiscard]] double ElevationAt_rad(const glm::dvec3& point) const {
     return elevation_rad_ + glm::dot(glm::dvec2(point) - place_m_, azimuth_) * per_radius_;
   }
-  /// Returns the tangent of the sun's elevation at a point.
-  [[nodiscard]] double SlopeAt(const glm::dvec3& point) const {
-    return std::tan(ElevationAt_rad(point));
-  }
-  [[nodiscard]] double OpticalDepth(const glm::dvec3& point, double slope, double most_depth) const;
-  /// A part of a beam.
-  struct Interval {
-    double begin_m, end_m;
-  };
   /// Returns where a beam is below an altitude, relative to the point where its slope is given: between
   /// the roots of a parabola that opens upwards.
-  [[nodiscard]] Interval Below(double altitude_m, double slope) const;
-  /// A beam from a point, with its slope there.
-  struct Beam {
-    glm::dvec3 from;
-    double slope;
-    Interval first, returned;  // parts between the altitudes of the field; empty if end <= begin
-    double returning;          // share of beams that meet clouds when they return
-  };
-  [[nodiscard]] Beam BeamFrom(const glm::dvec3& point, double slope) const;
+  [[nodiscard]] CloudBeam::Part Below(double altitude_m, double slope) const;
   /// Calls visit(ray, length_m) for chords of a part of a beam, in order, until it returns false.
   template <typename Visit>
-  void EachChord(const Beam& beam, const Interval& part, const Visit& visit) const;
-  [[nodiscard]] double OpticalDepthOf(const Beam& beam, const Interval& part,
-                                      double most_depth) const;
+  void EachChord(const CloudBeam& beam, const CloudBeam::Part& part, const Visit& visit) const;
   template <typename Random>
-  [[nodiscard]] double TransmittanceOf(const Beam& beam, const Interval& part,
+  [[nodiscard]] double TransmittanceOf(const CloudBeam& beam, const CloudBeam::Part& part,
                                        Random& random) const;
 
   glm::dvec3 to_sun_;
@@ -124,68 +152,29 @@ class CloudLowSun {
   double per_radius_, step_m_, farthest_m_, full_m_;
 };
 
-/// Optical depths to a sun of any elevation from kLowestCloudLight_deg on: by a map from
-/// kLowestCloudSun_deg on, and by following beams below. Immutable; safe to use from many threads. The
-/// field must outlive it.
-class CloudSunDepths {
- public:
-  /// Throws the InputErrors of CloudSunMap and CloudLowSun.
-  CloudSunDepths(const CloudField& field, const glm::dvec3& to_sun,
-                 const CloudSunMapOptions& map_options = {},
-                 const CloudLowSunOptions& low_options = {});
-
-  [[nodiscard]] const CloudField& field() const { return *field_; }
-  /// Returns the map or the beams; null if the other has the depths.
-  [[nodiscard]] const CloudSunMap* map() const { return std::get_if<CloudSunMap>(&sun_); }
-  [[nodiscard]] const CloudLowSun* low_sun() const { return std::get_if<CloudLowSun>(&sun_); }
-  /// Returns the unit vector to the sun, over the place of a low one.
-  [[nodiscard]] const glm::dvec3& to_sun() const {
-    return map() ? map()->to_sun() : low_sun()->to_sun();
-  }
-  /// Returns the unit vector to the sun at a point: over a round planet for a low one.
-  [[nodiscard]] glm::dvec3 ToSunAt(const glm::dvec3& point) const {
-    return map() ? map()->to_sun() : low_sun()->ToSunAt(point);
-  }
-  /// Returns the optical depth from a point to the sun: OpticalDepthToSun() or
-  /// CloudLowSun::OpticalDepth().
-  [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const;
-  /// Returns the transmittance for points in clear air and on the ground.
-  [[nodiscard]] double Transmittance(const glm::dvec3& point) const;
-  /// Returns CloudSunMap::TransmittanceAround(), or that at the point under a low sun.
-  [[nodiscard]] double TransmittanceAround(const glm::dvec3& point) const {
-    return map() ? map()->TransmittanceAround(point) : Transmittance(point);
-  }
-  /// Returns the mean transmittance from a plane below or above the field to the sun: that of the
-  /// map, or of 4096 beams over the place, whose standard error is 0.008 at most.
-  [[nodiscard]] double MeanTransmittance(double altitude_m) const;
-  /// Returns the same from the base of the field.
-  [[nodiscard]] double MeanTransmittance() const {
-    return MeanTransmittance(field_->base_altitude_m());
-  }
-  /// Returns the memory of the map [bytes]; 0 without one.
-  [[nodiscard]] std::size_t bytes() const;
-
- private:
-  const CloudField* field_;
-  std::variant<CloudSunMap, CloudLowSun> sun_;
-};
+template <typename Returned>
+double CloudLowSun::WithReturned(const CloudBeam& beam, double first, const Returned& returned) {
+  if (first >= kDeepest || beam.returning <= 0.0) return std::min(first, kDeepest);
+  const double crossing = returned();
+  const double added =
+      beam.returning < 1.0 ? -std::log1p(beam.returning * std::expm1(-crossing)) : crossing;
+  return std::min(first + added, kDeepest);
+}
 
 template <typename Visit>
-void CloudLowSun::EachChord(const Beam& beam, const Interval& part, const Visit& visit) const {
-  const auto along = [&](double distance_m) {
-    return glm::dvec3(glm::dvec2(beam.from) + distance_m * azimuth_,
-                      beam.from.z + distance_m * (beam.slope + 0.5 * distance_m * per_radius_));
-  };
+void CloudLowSun::EachChord(const CloudBeam& beam, const CloudBeam::Part& part,
+                            const Visit& visit) const {
   for (double at_m = part.begin_m; at_m < part.end_m; at_m += kChord_m) {
-    const glm::dvec3 from = along(at_m);
-    const glm::dvec3 way = along(std::min(at_m + kChord_m, part.end_m)) - from;
+    const glm::dvec3 from = beam.At(at_m);
+    const glm::dvec3 way = beam.At(std::min(at_m + kChord_m, part.end_m)) - from;
     const double length_m = glm::length(way);
     if (length_m > 0.0 && !visit(CloudRay{from, way / length_m}, length_m)) return;
   }
 }
 
 template <typename Random>
-double CloudLowSun::TransmittanceOf(const Beam& beam, const Interval& part, Random& random) const {
+double CloudLowSun::TransmittanceOf(const CloudBeam& beam, const CloudBeam::Part& part,
+                                    Random& random) const {
   double left = 1.0;
   EachChord(beam, part, [&](const CloudRay& ray, double length_m) {
     left *= tracker_.Transmittance(ray, length_m, random);
@@ -196,7 +185,7 @@ double CloudLowSun::TransmittanceOf(const Beam& beam, const Interval& part, Rand
 
 template <typename Random>
 double CloudLowSun::Transmittance(const glm::dvec3& point, Random& random) const {
-  const Beam beam = BeamFrom(point, SlopeAt(point));
+  const CloudBeam beam = BeamFrom(point, SlopeAt(point));
   const double left = TransmittanceOf(beam, beam.first, random);
   if (left == 0.0 || beam.returning == 0.0) return left;
   return left * (1.0 - beam.returning * (1.0 - TransmittanceOf(beam, beam.returned, random)));

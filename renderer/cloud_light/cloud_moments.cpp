@@ -153,11 +153,11 @@ CollidedLight CollidedOfMap(const CloudCells& cells, const CloudSunMap& map,
 }
 
 CollidedLight CollidedOfLowSun(const CloudCells& cells, const CloudField& field,
-                               const CloudLowSun& sun, double extinction_scale) {
+                               const CloudLowSunMap& sun, double extinction_scale) {
   constexpr std::size_t kPoints = 8;
   const glm::dvec3 cell_m = cells.cell_m();
   const double scale_m3 = extinction_scale * cell_m.x * cell_m.y * cell_m.z / kPoints;
-  return SumOfCollided(cells, -sun.to_sun(), [&](int i, const auto& add) {
+  return SumOfCollided(cells, -sun.sun().to_sun(), [&](int i, const auto& add) {
     const auto part = static_cast<std::size_t>(i);
     const std::size_t end = cells.size() * (part + 1) / kBeamSums * kPoints;
     for (std::size_t k = cells.size() * part / kBeamSums * kPoints; k < end; ++k) {
@@ -176,7 +176,7 @@ CollidedLight CollidedIn(const CloudCells& cells, const CloudSunDepths& to_sun,
                          double extinction_scale) {
   return to_sun.map()
              ? CollidedOfMap(cells, *to_sun.map(), extinction_scale)
-             : CollidedOfLowSun(cells, to_sun.field(), *to_sun.low_sun(), extinction_scale);
+             : CollidedOfLowSun(cells, to_sun.field(), *to_sun.low_map(), extinction_scale);
 }
 
 /// Returns the light of fine cells by coarse ones.

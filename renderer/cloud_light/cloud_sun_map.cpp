@@ -26,7 +26,7 @@ constexpr double kLeastAcross = 0.25;  // cells are at most four times as long o
 constexpr int kFineSteps = 12;
 constexpr double kFirstStep_m = 5.0, kStepGrowth = 1.15;
 // Beams and levels of a block, in each direction. A word of bits has a whole number of blocks.
-constexpr int kBlock = 4;
+constexpr int kBeamsOfBlock = 4;
 
 glm::dvec3 CheckedSun(const glm::dvec3& to_sun) {
   if (!(std::abs(glm::length(to_sun) - 1.0) <= 1e-6)) {
@@ -115,7 +115,8 @@ CloudSunMap::CloudSunMap(const CloudField& field, const glm::dvec3& to_sun,
     const double across = std::sqrt(std::max(0.0, 1.0 - to_sun[axis] * to_sun[axis]));
     const double cell_m = options.cell_m / std::max(across, kLeastAcross);
     // Blocks of equal size keep the mean.
-    const double cells = kBlock * std::max(1.0, std::round(size_m[axis] / (kBlock * cell_m)));
+    const double cells =
+        kBeamsOfBlock * std::max(1.0, std::round(size_m[axis] / (kBeamsOfBlock * cell_m)));
     cell_m_[axis] = size_m[axis] / cells;
     nodes_[static_cast<std::size_t>(axis)] = static_cast<int>(cells) + (is_periodic_ ? 0 : 1);
   }
@@ -160,8 +161,9 @@ CloudSunMap::CloudSunMap(const CloudField& field, const glm::dvec3& to_sun,
     value_.insert(value_.end(), line.value.begin(), line.value.end());
     line = {};
   }
-  for (std::size_t axis = 0; axis < 2; ++axis) blocks_[axis] = std::max(1, nodes_[axis] / kBlock);
-  block_.resize(BlockOf((levels_ + kBlock - 1) / kBlock, 0, 0));
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    blocks_[axis] = std::max(1, nodes_[axis] / kBeamsOfBlock);
+  block_.resize(BlockOf((levels_ + kBeamsOfBlock - 1) / kBeamsOfBlock, 0, 0));
   tbb::parallel_for(0, blocks_[1], [&](int line) { MakeBlocks(line); });
 }
 
@@ -206,7 +208,7 @@ double CloudSunMap::Transmittance(const glm::dvec3& point) const {
 }
 
 void CloudSunMap::MakeBlocks(int line) {
-  const int levels = (levels_ + kBlock - 1) / kBlock;
+  const int levels = (levels_ + kBeamsOfBlock - 1) / kBeamsOfBlock;
   const auto border = [](int block, int blocks, int nodes) { return block * nodes / blocks; };
   const int first_line = border(line, blocks_[1], nodes_[1]);
   const int end_line = border(line + 1, blocks_[1], nodes_[1]);
@@ -221,7 +223,7 @@ void CloudSunMap::MakeBlocks(int line) {
         std::size_t stored = 0;
         float left = 1.0F;
         for (std::size_t level = sum.size(); level-- > 0;) {
-          const std::size_t bit = kBlock * level;
+          const std::size_t bit = kBeamsOfBlock * level;
           const auto bits = has_cloud_[node * words_ + bit / 64] >> (bit % 64) & 0xFU;
           if (bits != 0) {
             stored += static_cast<std::size_t>(std::popcount(bits));
@@ -240,8 +242,8 @@ void CloudSunMap::MakeBlocks(int line) {
 }
 
 double CloudSunMap::TransmittanceAround(const glm::dvec3& point) const {
-  const double level = std::max(0.0, (point.z - base_m_) / (kBlock * level_m_));
-  const int levels = (levels_ + kBlock - 1) / kBlock;
+  const double level = std::max(0.0, (point.z - base_m_) / (kBeamsOfBlock * level_m_));
+  const int levels = (levels_ + kBeamsOfBlock - 1) / kBeamsOfBlock;
   if (!(level < levels)) return 1.0;
   const glm::dvec2 foot = FootOf(point);
   const auto among_blocks = [&](std::size_t axis) {

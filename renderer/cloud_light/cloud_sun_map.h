@@ -146,7 +146,7 @@ class CloudSunMap {
   std::vector<std::uint32_t> first_;      // of each node in value_
   std::vector<std::uint16_t> value_;      // of each bit that is set, from the highest one down
   std::array<int, 2> blocks_{};           // along u and v
-  // Mean transmittances of blocks at every kBlock-th level, along u first.
+  // Mean transmittances of blocks at every kBeamsOfBlock-th level, along u first.
   std::vector<std::uint16_t> block_;
 };
 

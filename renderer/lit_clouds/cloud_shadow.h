@@ -11,7 +11,7 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/cloud_light/cloud_low_sun.h"
+#include "renderer/cloud_light/cloud_sun_depths.h"
 #include "renderer/layer.h"
 #include "renderer/visibility/sunlit_path.h"
 
@@ -39,9 +39,8 @@ class CloudShadow {
     double per_distance;  // and far away, relative to the distance
     double reach_m;       // beyond it the mean of the layers holds
   };
-  /// A beam near the horizon passes several clouds, so that it shows few edges, and has no map: a
-  /// sample costs a hundred times as much.
-  static constexpr Steps kByMap{50.0, 0.02, 120e3}, kUnderLowSun{200.0, 0.1, 40e3};
+  /// A beam near the horizon passes several clouds, so that it shows few edges, and a sample costs more.
+  static constexpr Steps kByMap{50.0, 0.02, 120e3}, kUnderLowSun{100.0, 0.05, 40e3};
   /// Samples of a map are means around points beyond this distance.
   static constexpr double kSharpReach_m = 2000.0;
 

@@ -12,7 +12,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "renderer/cloud_light/cloud_low_sun.h"
+#include "renderer/cloud_light/cloud_sun_depths.h"
 #include "renderer/cloud_light/cloud_sun_map.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/layer.h"

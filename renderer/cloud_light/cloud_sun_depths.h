@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// Optical depths from any point to a sun of any elevation: by the map of cloud_sun_map.h for a sun
+// from 3 degrees on, and over a round planet for a lower one. There, a periodic field has the map of
+// cloud_low_sun_map.h, and in an open field, which beams leave soon, each is followed.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <variant>
+
+#include "renderer/cloud_light/cloud_low_sun.h"
+#include "renderer/cloud_light/cloud_low_sun_map.h"
+#include "renderer/cloud_light/cloud_sun_map.h"
+#include "renderer/clouds/cloud_field.h"
+
+namespace alpenglow::renderer {
+
+/// Optical depths to a sun of any elevation from kLowestCloudLight_deg on. Immutable; safe to use from
+/// many threads. The field must outlive it.
+class CloudSunDepths {
+ public:
+  /// Throws the InputErrors of both maps and CloudLowSun.
+  CloudSunDepths(const CloudField& field, const glm::dvec3& to_sun,
+                 const CloudSunMapOptions& map_options = {},
+                 const CloudLowSunOptions& low_options = {},
+                 const CloudLowSunMapOptions& low_map_options = {});
+
+  [[nodiscard]] const CloudField& field() const { return *field_; }
+  /// Returns the map of a high or of a low sun; null if the other has the depths.
+  [[nodiscard]] const CloudSunMap* map() const { return std::get_if<CloudSunMap>(&sun_); }
+  [[nodiscard]] const CloudLowSunMap* low_map() const { return std::get_if<CloudLowSunMap>(&sun_); }
+  /// Returns the beams of a low sun; null for a high one.
+  [[nodiscard]] const CloudLowSun* low_sun() const {
+    return low_map() ? &low_map()->sun() : nullptr;
+  }
+  /// Returns the unit vector to the sun, over the place of a low one.
+  [[nodiscard]] const glm::dvec3& to_sun() const {
+    return map() ? map()->to_sun() : low_sun()->to_sun();
+  }
+  /// Returns the unit vector to the sun at a point: over a round planet for a low one.
+  [[nodiscard]] glm::dvec3 ToSunAt(const glm::dvec3& point) const {
+    return map() ? map()->to_sun() : low_sun()->ToSunAt(point);
+  }
+  /// Returns the optical depth from a point in a cloud to the sun.
+  [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const;
+  /// Returns the transmittance for points in clear air and on the ground.
+  [[nodiscard]] double Transmittance(const glm::dvec3& point) const;
+  /// Returns the same as a mean around a point.
+  [[nodiscard]] double TransmittanceAround(const glm::dvec3& point) const {
+    return map() ? map()->TransmittanceAround(point) : low_map()->TransmittanceAround(point);
+  }
+  /// Returns the mean transmittance from a plane below or above the field to the sun: that of the
+  /// map, or of 4096 beams over the place of a low sun, whose standard error is 0.008 at most.
+  [[nodiscard]] double MeanTransmittance(double altitude_m) const;
+  /// Returns the same from the base of the field.
+  [[nodiscard]] double MeanTransmittance() const {
+    return MeanTransmittance(field_->base_altitude_m());
+  }
+  /// Returns the memory of the map [bytes].
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  const CloudField* field_;
+  std::variant<CloudSunMap, CloudLowSunMap> sun_;
+};
+
+}  // namespace alpenglow::renderer
