@@ -29,11 +29,7 @@
 #include <vector>
 
 #include "renderer/cloud_light/cloud_cells.h"
-<<<<<<< HEAD
 #include "renderer/cloud_light/cloud_floor.h"
-#include "renderer/cloud_light/cloud_low_sun.h"
-=======
->>>>>>> 26d3be3a (renderer: keep light under a low sun in a map of beams)
 #include "renderer/cloud_light/cloud_optics.h"
 #include "renderer/cloud_light/cloud_sun_depths.h"
 
