@@ -15,6 +15,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "renderer/cloud_light/cloud_tracking.h"
+#include "renderer/clouds/cloud_line.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -23,8 +24,8 @@ namespace {
 // Levels stand at most this number of cells apart along a beam.
 constexpr double kCellsAlongBeam = 4.0;
 constexpr double kLeastAcross = 0.25;  // cells are at most four times as long on the ground
-constexpr int kFineSteps = 12;
-constexpr double kFirstStep_m = 5.0, kStepGrowth = 1.15;
+constexpr double kFine_m = 120.0, kFineDepth = 8.0;
+constexpr double kFirstStep_m = 5.0, kStepGrowth = 1.3;
 // Beams and levels of a block, in each direction. A word of bits has a whole number of blocks.
 constexpr int kBeamsOfBlock = 4;
 
@@ -287,10 +288,13 @@ std::uint64_t CloudSunMap::hash() const {
 }
 
 double OpticalDepthToSun(const CloudField& field, const CloudSunMap& map, const glm::dvec3& point) {
+  CloudField::Line line(field, point, map.to_sun());
   double depth = 0.0, along_m = 0.0, step_m = kFirstStep_m;
-  for (int i = 0; i < kFineSteps; ++i) {
-    depth += step_m * field.Extinction_per_m(point + (along_m + 0.5 * step_m) * map.to_sun());
+  while (along_m < kFine_m && depth < kFineDepth) {
+    const double per_m = line.At(along_m + 0.5 * step_m).extinction_per_m;
+    depth += step_m * per_m;
     along_m += step_m;
+    if (per_m <= 0.0) along_m += line.ClearAhead_m(along_m);
     step_m *= kStepGrowth;
   }
   return depth + map.OpticalDepth(point + along_m * map.to_sun());

@@ -12,9 +12,10 @@
 // whole layer.
 //
 // Between beams the transmittance is linear, so that the mean of a shadow is that of the beams, but
-// clouds are blurred over cells of 20 m. OpticalDepthToSun() therefore takes twelve steps through the
-// field first, of 5 m times 1.15^n, and the map 145 m ahead. Steps that grow faster reach further,
-// but the noise of their optical depth makes the mean transmittance too large.
+// clouds are blurred over cells of 20 m. OpticalDepthToSun() therefore takes steps of 5 m times 1.3^n
+// through the field first, and the map 120 m ahead, or where the optical depth is 8. Steps that grow
+// faster make the mean transmittance too large, because their optical depth has more noise, and with
+// the map 60 m ahead it is 4 to 5 % too small under a sun at 12 degrees.
 //
 // TransmittanceAround() is for shafts far from the eye: a mean over blocks of about 80 m in all
 // directions, of 16 bits each. It costs a tenth, and has no noise where samples are further apart

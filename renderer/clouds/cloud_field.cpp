@@ -20,9 +20,6 @@ namespace alpenglow::renderer {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-// Rays with less than this along an axis count as parallel to its borders: over 100 km they move by a
-// thousandth of a millimetre.
-constexpr double kLeastSlope = 1e-11;
 
 void CheckLattice(const CloudLattice& lattice) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -62,11 +59,6 @@ double LargestDetail(const CloudDetail& detail) {
   return detail.noise ? detail.amplitude_m * detail.noise->Largest() : 0.0;
 }
 
-/// Returns the distance by which a span ends behind a border.
-double BehindBorder(const CloudLattice& lattice) {
-  return 1e-6 * std::min({lattice.voxel_m.x, lattice.voxel_m.y, lattice.voxel_m.z});
-}
-
 /// The interval of altitudes, or of x or y, that a lattice covers; all x and y if it is periodic.
 struct AxisExtent {
   double low, high;
@@ -76,7 +68,7 @@ AxisExtent AxisExtentOf(const CloudLattice& lattice, int axis) {
   return {lattice.origin_m[axis], lattice.origin_m[axis] + lattice.size_m()[axis]};
 }
 
-/// Returns the length of a ray from outside of the lattice until it is inside; infinite if it misses.
+/// Returns the length of a ray from outside of the lattice until its border; infinite if it misses.
 double DistanceToLattice(const CloudLattice& lattice, const glm::dvec3& point,
                          const glm::dvec3& direction) {
   double enter = 0.0, exit = kInfinite;
@@ -91,7 +83,7 @@ double DistanceToLattice(const CloudLattice& lattice, const glm::dvec3& point,
     enter = std::max(enter, std::min(a, b));
     exit = std::min(exit, std::max(a, b));
   }
-  return enter < exit ? enter + BehindBorder(lattice) : kInfinite;
+  return enter < exit ? enter : kInfinite;
 }
 
 /// Returns the distance of a point outside of the lattice from it.
@@ -268,6 +260,29 @@ class SampleGrid {
 
 }  // namespace
 
+std::uint64_t CloudField::FilledCubes(const BrickValues& values) {
+  const auto has_cloud = [&](int x, int y, int z) {
+    const auto corner = static_cast<std::size_t>((z * kCorners + y) * kCorners + x);
+    return values.extinction_per_m.empty() ? values.depth[corner] > -kLeastCloudDepth_m
+                                           : values.extinction_per_m[corner] > 0.0F;
+  };
+  constexpr int kVoxels = kSide / kCubes;
+  std::uint64_t filled = 0;
+  for (int cube = 0; cube < kCubes * kCubes * kCubes; ++cube) {
+    const int x = cube % kCubes, y = cube / kCubes % kCubes, z = cube / (kCubes * kCubes);
+    bool is_filled = false;
+    for (int k = 0; k <= kVoxels; ++k) {
+      for (int j = 0; j <= kVoxels; ++j) {
+        for (int i = 0; i <= kVoxels; ++i) {
+          is_filled = is_filled || has_cloud(kVoxels * x + i, kVoxels * y + j, kVoxels * z + k);
+        }
+      }
+    }
+    if (is_filled) filled |= std::uint64_t{1} << static_cast<unsigned>(cube);
+  }
+  return filled;
+}
+
 std::shared_ptr<const CloudField::Bricks> CloudField::Collected(const CloudLattice& lattice,
                                                                 const BrickSource& source) {
   auto bricks = std::make_shared<Bricks>();
@@ -297,6 +312,7 @@ std::shared_ptr<const CloudField::Bricks> CloudField::Collected(const CloudLatti
                                       values.extinction_per_m.end());
       bricks->radius_um.insert(bricks->radius_um.end(), values.radius_um.begin(),
                                values.radius_um.end());
+      bricks->filled.push_back(FilledCubes(values));
       bricks->majorant_per_m.push_back(static_cast<float>(values.majorant_per_m * (1.0 + 1e-6)));
       bricks->largest_per_m = std::max(bricks->largest_per_m, values.majorant_per_m);
       const glm::dvec3 corner(x, row % ny, row / ny);
@@ -386,7 +402,7 @@ CloudField::CloudField(const CloudLattice& lattice, const CloudSamples& samples)
 double CloudField::MostBytes(const CloudLattice& lattice) {
   double bricks = 1.0;
   for (const int voxels : lattice.voxels) bricks *= (voxels + kSide - 1) / kSide;
-  constexpr std::size_t kIndexed = sizeof(std::int32_t) + 1 + sizeof(float);
+  constexpr std::size_t kIndexed = sizeof(std::int32_t) + 1 + sizeof(float) + sizeof(std::uint64_t);
   return bricks * static_cast<double>(kBrick + kIndexed + sizeof(std::pair<int, BrickValues>));
 }
 
@@ -401,7 +417,8 @@ CloudBox CloudField::Bounds() const {
 
 std::size_t CloudField::bytes() const {
   return bricks_->slot.size() * sizeof(std::int32_t) + bricks_->distance.size() +
-         bricks_->depth.size() + bricks_->majorant_per_m.size() * sizeof(float) +
+         bricks_->depth.size() +
+         bricks_->majorant_per_m.size() * (sizeof(float) + sizeof(std::uint64_t)) +
          (bricks_->extinction_per_m.size() + bricks_->radius_um.size()) * sizeof(float);
 }
 
@@ -445,33 +462,24 @@ double CloudField::EffectiveRadius_um(const glm::dvec3& point) const {
 CloudBox CloudField::BlockAround(const Cell& cell) const {
   const int distance = bricks_->distance[BrickOf(cell)];
   CloudBox block;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const bool has_short_brick =
-        lattice_.is_periodic && axis < 2 && lattice_.voxels[a] % kSide != 0;
-    // A block that reaches the short brick at the end of a period is shorter by less than a brick.
-    const int around = std::max(distance - (has_short_brick ? 2 : 1), 0);
-    const int first = cell.voxel[a] / kSide * kSide;
-    const int last = std::min(first + kSide, lattice_.voxels[a]);
-    const double at = cell.voxel[a] + cell.share[axis];
-    block.low[axis] = (first - kSide * around - at) * lattice_.voxel_m[axis];
-    block.high[axis] = (last + kSide * around - at) * lattice_.voxel_m[axis];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int a = static_cast<int>(axis);
+    const BlockEnds ends = EndsOf(cell, distance, axis);
+    const double at = cell.voxel[axis] + cell.share[a];
+    block.low[a] = (ends.first - at) * lattice_.voxel_m[a];
+    block.high[a] = (ends.end - at) * lattice_.voxel_m[a];
   }
   return block;
 }
 
 CloudSpan CloudField::SpanAhead(const glm::dvec3& point, const glm::dvec3& direction) const {
   const Cell cell = CellOf(point);
-  if (!cell.is_inside) return {DistanceToLattice(lattice_, point, direction), 0.0};
-  const CloudBox block = BlockAround(cell);
-  double exit = kInfinite;
-  for (int axis = 0; axis < 3; ++axis) {
-    // A ray that begins at a border and leaves it this slowly would take millions of spans.
-    if (std::abs(direction[axis]) < kLeastSlope) continue;
-    const double border = direction[axis] > 0.0 ? block.high[axis] : block.low[axis];
-    exit = std::min(exit, border / direction[axis]);
+  if (!cell.is_inside) {
+    return {DistanceToLattice(lattice_, point, direction) + behind_border_m(), 0.0};
   }
-  return {std::max(exit, 0.0) + BehindBorder(lattice_), MajorantOf(bricks_->slot[BrickOf(cell)])};
+  const std::size_t brick = BrickOf(cell);
+  return {LengthIn_m(cell, bricks_->distance[brick], lattice_.voxel_m / direction),
+          MajorantOf(bricks_->slot[brick])};
 }
 
 double CloudField::MajorantOf(std::int32_t slot) const {

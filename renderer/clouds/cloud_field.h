@@ -18,6 +18,7 @@
 // periodic field repeats along x and y; an open one is empty outside its box.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -25,6 +26,7 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -176,8 +178,12 @@ class CloudField {
   /// It may be infinite.
   [[nodiscard]] double EmptyDistance_m(const glm::dvec3& point) const;
 
+  /// Samples along a straight line: cloud_line.h.
+  class Line;
+
  private:
   static constexpr int kSide = 8, kCorners = 9, kBrick = kCorners * kCorners * kCorners;
+  static constexpr int kCubes = 4;  // along each side of a brick
 
   /// The stored part of a field, shared by copies.
   struct Bricks {
@@ -190,6 +196,8 @@ class CloudField {
     std::vector<float> radius_um;         // kBrick per slot; empty for shapes
     CloudBox bounds;                      // relative to the origin of the lattice
     double largest_per_m = 0.0;
+    std::vector<std::uint64_t>
+        filled;  // per slot: a bit for each cube of 2 x 2 x 2 voxels with cloud
   };
   /// Values at the corners of one brick.
   struct BrickValues {
@@ -197,6 +205,8 @@ class CloudField {
     std::vector<float> extinction_per_m, radius_um;
     double majorant_per_m;
   };
+  /// Returns the cubes of a brick that have a corner with cloud, by bits, x fastest.
+  [[nodiscard]] static std::uint64_t FilledCubes(const BrickValues& values);
   /// Returns the values of a brick, given by its numbers along x, y and z; nothing if it is empty.
   using BrickSource = std::function<std::optional<BrickValues>(const std::array<int, 3>&)>;
   [[nodiscard]] static std::shared_ptr<const Bricks> Collected(const CloudLattice& lattice,
@@ -216,17 +226,63 @@ class CloudField {
     bool is_inside;
   };
 
-  [[nodiscard]] Cell CellOf(const glm::dvec3& point) const;
+  [[nodiscard]] Cell CellOf(const glm::dvec3& point) const {
+    return CellIn((point - lattice_.origin_m) * per_voxel_);
+  }
+  /// @param at  a point in voxels from the corner of the lattice.
+  [[nodiscard]] Cell CellIn(const glm::dvec3& at) const;
   [[nodiscard]] std::size_t BrickOf(const Cell& cell) const;
   [[nodiscard]] std::optional<Place> Find(const glm::dvec3& point) const;
+  /// @param corner  value at the corner of a voxel with the least coordinates, in its brick.
   template <typename Value>
-  [[nodiscard]] static float Mixed(const std::vector<Value>& values, const Place& place);
+  [[nodiscard]] static float Mixed(const Value* corner, float x, float y, float z);
+  template <typename Value>
+  [[nodiscard]] static float Mixed(const std::vector<Value>& values, const Place& place) {
+    return Mixed(values.data() + place.corner, place.x, place.y, place.z);
+  }
   [[nodiscard]] double DepthAt(const Place& place) const;
   [[nodiscard]] double ExtinctionAt(const Place& place, double depth_m, double z) const;
   [[nodiscard]] double MajorantOf(std::int32_t slot) const;
   [[nodiscard]] double DetailAt(const glm::dvec3& point) const;
   /// Returns the brick of a cell, or the empty bricks around it, relative to the cell's point.
   [[nodiscard]] CloudBox BlockAround(const Cell& cell) const;
+  /// The first voxel of a block along an axis, and the one behind its last.
+  struct BlockEnds {
+    int first, end;
+  };
+  /// Returns the ends of the brick of a cell, or of the empty bricks around it.
+  [[nodiscard]] BlockEnds EndsOf(const Cell& cell, int distance, std::size_t axis) const {
+    const bool has_short_brick =
+        lattice_.is_periodic && axis < 2 && lattice_.voxels[axis] % kSide != 0;
+    // A block that reaches the short brick at the end of a period is shorter by less than a brick.
+    const int around = kSide * std::max(distance - (has_short_brick ? 2 : 1), 0);
+    const int first = cell.voxel[axis] / kSide * kSide;
+    return {first - around, std::min(first + kSide, lattice_.voxels[axis]) + around};
+  }
+  /// Returns the length of a line from a point in a cell until slightly behind the border of this block.
+  /// @param m_per_voxel  of the line, along each axis.
+  [[nodiscard]] double LengthIn_m(const Cell& cell, int distance,
+                                  const glm::dvec3& m_per_voxel) const {
+    double exit_m = kEndless_m;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int a = static_cast<int>(axis);
+      // A line that begins at a border and leaves it this slowly would take millions of blocks.
+      if (!(std::abs(m_per_voxel[a]) < kSlowest * lattice_.voxel_m[a])) continue;
+      const BlockEnds ends = EndsOf(cell, distance, axis);
+      const int border = m_per_voxel[a] > 0.0 ? ends.end : ends.first;
+      exit_m = std::min(exit_m, (border - cell.voxel[axis] - cell.share[a]) * m_per_voxel[a]);
+    }
+    return std::max(exit_m, 0.0) + behind_border_m();
+  }
+  /// Returns the distance by which spans end behind a border.
+  [[nodiscard]] double behind_border_m() const {
+    const glm::dvec3& voxel_m = lattice_.voxel_m;
+    return 1e-6 * std::min({voxel_m.x, voxel_m.y, voxel_m.z});
+  }
+  static constexpr double kEndless_m = std::numeric_limits<double>::infinity();
+  // Lines with more than this many metres of length per metre along an axis count as parallel to its
+  // borders: over 100 km they move by a thousandth of a millimetre.
+  static constexpr double kSlowest = 1e11;
 
   CloudLattice lattice_;
   glm::dvec3 per_voxel_;
@@ -237,8 +293,7 @@ class CloudField {
 
 // The queries are defined here because paths through clouds call them many times per scattering.
 
-inline CloudField::Cell CloudField::CellOf(const glm::dvec3& point) const {
-  const glm::dvec3 at = (point - lattice_.origin_m) * per_voxel_;
+inline CloudField::Cell CloudField::CellIn(const glm::dvec3& at) const {
   Cell cell{{}, at, true};
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
@@ -278,18 +333,17 @@ inline std::optional<CloudField::Place> CloudField::Find(const glm::dvec3& point
 }
 
 template <typename Value>
-float CloudField::Mixed(const std::vector<Value>& values, const Place& place) {
-  const Value* corner = values.data() + place.corner;
+inline float CloudField::Mixed(const Value* corner, float x, float y, float z) {
   const auto along_x = [&](int offset) {
     const auto west = static_cast<float>(corner[offset]);
-    return west + place.x * (static_cast<float>(corner[offset + 1]) - west);
+    return west + x * (static_cast<float>(corner[offset + 1]) - west);
   };
   const auto along_xy = [&](int offset) {
     const float south = along_x(offset);
-    return south + place.y * (along_x(offset + kCorners) - south);
+    return south + y * (along_x(offset + kCorners) - south);
   };
   const float below = along_xy(0);
-  return below + place.z * (along_xy(kCorners * kCorners) - below);
+  return below + z * (along_xy(kCorners * kCorners) - below);
 }
 
 inline double CloudField::DepthAt(const Place& place) const {

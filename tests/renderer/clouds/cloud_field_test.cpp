@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "renderer/clouds/cloud_cover.h"
+#include "renderer/clouds/cloud_line.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/thread_counts.h"
 
@@ -223,6 +224,73 @@ TEST(CloudField, VoxelsNeedNotFillTheLastBrick) {
           false);
     }
   }
+}
+
+/// Returns a field of others with two clouds, the bricks of which are not full.
+CloudField FieldOfOthers(bool is_periodic) {
+  CloudSamples samples;
+  const CloudLattice lattice{{21, 29, 13}, {20.0, 30.0, 40.0}, {-50.0, 10.0, 100.0}, is_periodic};
+  const int beyond = is_periodic ? 0 : 1, nx = 21 + beyond, ny = 29 + beyond;
+  samples.extinction_per_m.resize(static_cast<std::size_t>(nx * ny * 14));
+  const auto at = [&](int x, int y, int z) -> float& {
+    return samples.extinction_per_m[static_cast<std::size_t>((z * ny + y) * nx + x)];
+  };
+  at(20, 28, 6) = 0.05F;
+  for (int x = 4; x < 12; ++x) at(x, 12, 9) = 0.02F;
+  return {lattice, samples};
+}
+
+/// Calls visit(field, origin, direction) for lines through fields of all kinds.
+template <typename Visit>
+void EachTestLine(const Visit& visit) {
+  for (const CloudField& field : {BallField(), FieldOfOthers(true), FieldOfOthers(false)}) {
+    const glm::dvec3 size_m = field.lattice().size_m();
+    for (int i = 0; i < 300; ++i) {
+      const glm::dvec3 inside(std::fmod(0.618034 * i, 1.0), std::fmod(0.754878 * i, 1.0),
+                              std::fmod(0.56984 * i, 1.0));
+      const glm::dvec3 direction =
+          i % 10 == 0 ? glm::dvec3(i % 20 == 0 ? 1.0 : -1.0, 0.0, 0.0) : DirectionOf(i);
+      visit(field, field.lattice().origin_m + size_m * inside - 300.0 * direction, direction);
+    }
+  }
+}
+
+TEST(CloudLine, SamplesAreThoseOfTheField) {
+  int with_cloud = 0;
+  EachTestLine([&](const CloudField& field, const glm::dvec3& origin, const glm::dvec3& direction) {
+    CloudField::Line line(field, origin, direction);
+    for (double at_m = 0.0; at_m < 1500.0; at_m += 7.3) {
+      const CloudField::Sample expected = field.SampleAt(origin + at_m * direction);
+      const CloudField::Sample found = line.At(at_m);
+      with_cloud += expected.extinction_per_m > 0.0 ? 1 : 0;
+      // Coordinates are rounded differently.
+      EXPECT_NEAR(found.depth_m, expected.depth_m, 1e-3);
+      EXPECT_NEAR(found.extinction_per_m, expected.extinction_per_m, 1e-6);
+    }
+  });
+  EXPECT_GT(with_cloud, 400);
+}
+
+TEST(CloudLine, ClearStretchesHaveNoCloudAndEndAtIt) {
+  double clear_m = 0.0, empty_m = 0.0;
+  EachTestLine([&](const CloudField& field, const glm::dvec3& origin, const glm::dvec3& direction) {
+    CloudField::Line line(field, origin, direction);
+    for (double at_m = 0.0; at_m < 1500.0;) {
+      const double ahead_m = std::min(line.ClearAhead_m(at_m), 1500.0 - at_m);
+      ASSERT_GE(ahead_m, 0.0);
+      for (const double share : {0.001, 0.3, 0.7, 0.999}) {
+        if (ahead_m == 0.0) continue;
+        EXPECT_EQ(field.Extinction_per_m(origin + (at_m + share * ahead_m) * direction), 0.0);
+      }
+      clear_m += ahead_m;
+      const double step_m = ahead_m > 0.0 ? ahead_m : 4.0;
+      if (field.Extinction_per_m(origin + (at_m + 0.5 * step_m) * direction) == 0.0) {
+        empty_m += step_m;
+      }
+      at_m += step_m;
+    }
+  });
+  EXPECT_GT(clear_m, 0.9 * empty_m) << "cubes with cloud have the rest of the clear air";
 }
 
 TEST(CloudField, MovedFieldIsTheSameElsewhere) {
