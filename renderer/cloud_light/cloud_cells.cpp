@@ -240,29 +240,37 @@ std::int32_t CloudCells::FullCellAt(const glm::dvec3& point, const glm::dvec3& a
 CloudCells::Mixture CloudCells::Around(const glm::dvec3& point) const {
   glm::dvec3 at = (point - origin_m_) / cell_m_ - 0.5;
   at.z = std::clamp(at.z, 0.0, count_[2] - 1.0);
-  const glm::dvec3 low = glm::floor(at), share = at - low;
-  std::array<std::array<int, 2>, 3> index{};
+  const glm::dvec3 low = glm::floor(at);
+  std::array<std::array<std::size_t, 2>, 3> index{};
+  std::array<std::array<float, 2>, 3> share{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int first = static_cast<int>(low[static_cast<int>(axis)]);
-    index[axis] = {first, first + 1};
-    if (is_periodic_ && axis < 2) {
-      index[axis] = {Wrapped(first, count_[axis]), Wrapped(first + 1, count_[axis])};
+    const int a = static_cast<int>(axis), count = count_[axis];
+    const bool wraps = is_periodic_ && axis < 2;
+    int first = static_cast<int>(low[a]);
+    if (wraps && (first < 0 || first >= count)) first = Wrapped(first, count);
+    int second = first + 1;
+    if (wraps) {
+      second = second < count ? second : 0;
     } else {
-      for (int& i : index[axis]) i = std::clamp(i, 0, count_[axis] - 1);
+      first = std::clamp(first, 0, count - 1);
+      second = std::clamp(second, 0, count - 1);
     }
+    index[axis] = {static_cast<std::size_t>(first), static_cast<std::size_t>(second)};
+    const auto rest = static_cast<float>(at[a] - low[a]);
+    share[axis] = {1.0F - rest, rest};
   }
   Mixture mixture{};
   float sum = 0.0F;
   for (std::size_t corner = 0; corner < 8; ++corner) {
     const std::size_t x = corner & 1U, y = corner >> 1U & 1U, z = corner >> 2U;
-    const double weight = (x != 0 ? share.x : 1.0 - share.x) * (y != 0 ? share.y : 1.0 - share.y) *
-                          (z != 0 ? share.z : 1.0 - share.z);
-    const std::int32_t cell = stored_[PlaceOf(index[0][x], index[1][y], index[2][z])];
-    if (cell < 0 || weight <= 0.0) continue;
+    const float weight = share[0][x] * share[1][y] * share[2][z];
+    const std::size_t row = index[2][z] * static_cast<std::size_t>(count_[1]) + index[1][y];
+    const std::int32_t cell = stored_[row * static_cast<std::size_t>(count_[0]) + index[0][x]];
+    if (cell < 0 || weight <= 0.0F) continue;
     const auto i = static_cast<std::size_t>(mixture.count++);
     mixture.cell[i] = static_cast<std::uint32_t>(cell);
-    mixture.weight[i] = static_cast<float>(weight);
-    sum += mixture.weight[i];
+    mixture.weight[i] = weight;
+    sum += weight;
   }
   for (int i = 0; i < mixture.count; ++i) mixture.weight[static_cast<std::size_t>(i)] /= sum;
   return mixture;

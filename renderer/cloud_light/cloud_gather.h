@@ -2,16 +2,17 @@
 // Light that a field of clouds scatters into a ray, from the extinction of voxels and the moments of
 // light on coarse cells.
 //
-// The ray is followed by SpanAhead() through empty bricks, by a share of the depth under the surface
-// outside of clouds, and in steps of scaled optical depth 0.35 inside. With T' = exp(-tau') the
+// The ray passes bricks and cubes without cloud (cloud_line.h), and takes a share of the depth under
+// the surface near clouds and steps of scaled optical depth 0.5 inside. With T' = exp(-tau') the
 // transmittance of the scaled medium (cloud_optics.h) up to a step, its source is
 //
 //   w' p_eff(nu, f w (tau_s + tau)) exp(-tau'_s) + k(tau_s) sum w' chi'_l M_lm Y_lm
 //
 // per unit of scaled extinction, with the optical depths tau to the eye and tau_s to the sun. The
-// first term is light of the beam with the forward peak (forward_peak.h). Moments change slowly and
-// are interpolated every 20 m. The factor k is left to the caller (cloud_factor.h): light of higher
-// orders is summed apart for hats in log(1 + tau_s).
+// first term is light of the beam with the forward peak (forward_peak.h). The optical depth to the sun
+// and the moments are linear between nodes of the ray, 40 m apart where it enters a cloud and up to
+// 80 m further inside. The factor k is left to the caller (cloud_factor.h): light of higher orders is
+// summed apart for hats in log(1 + tau_s).
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@
 namespace alpenglow::renderer {
 
 struct CloudGatherOptions {
-  double step_depth = 0.35;  // scaled optical depth of a step
+  double step_depth = 0.5;  // scaled optical depth of a step
   double least_step_m = 4.0, most_step_m = 40.0;
   bool uses_detail = false;  // whether the extinction has the detail below a voxel
 };
@@ -67,16 +68,12 @@ class CloudGather {
   [[nodiscard]] CloudRayParts Along(const CloudRay& ray, double length_m) const;
 
  private:
+  struct Node;
   struct March;
   struct Inside;
-  [[nodiscard]] double Extinction_per_m(const glm::dvec3& point) const {
-    return options_.uses_detail ? field_->DetailedExtinction_per_m(point)
-                                : field_->Extinction_per_m(point);
-  }
-  /// Moves on to the next brick with cloud. Returns false if there is none before the end.
-  [[nodiscard]] bool PassClearBricks(March& march) const;
-  /// Moves back to the surface after a step into a cloud, and returns what is there.
-  [[nodiscard]] CloudField::Sample SampleAtSurface(March& march) const;
+  [[nodiscard]] Node NodeAt(const March& march, double at_m) const;
+  /// Returns the distance at which a ray has passed all clouds.
+  [[nodiscard]] double LayerLength_m(const CloudRay& ray) const;
   [[nodiscard]] double StepInside_m(const CloudField::Sample& sample) const;
 
   const CloudField* field_;

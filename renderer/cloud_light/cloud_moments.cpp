@@ -432,8 +432,7 @@ SolvedCloudMoments CloudMomentSolver::Grid::Solve(const Source& source, const Cl
           found.residual};
 }
 
-CloudHarmonics CloudMoments::At(const glm::dvec3& point) const {
-  const CloudCells::Mixture mixture = cells_->Around(point);
+CloudHarmonics CloudMoments::Of(const CloudCells::Mixture& mixture) const {
   CloudHarmonics mean{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(mixture.count); ++i) {
     const CloudHarmonics& of = moments_[mixture.cell[i]];
@@ -444,13 +443,9 @@ CloudHarmonics CloudMoments::At(const glm::dvec3& point) const {
 
 float CloudMoments::Source(const CloudCells::Mixture& mixture,
                            const CloudHarmonics& factors) const {
+  const CloudHarmonics moments = Of(mixture);
   float source = 0.0F;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(mixture.count); ++i) {
-    const CloudHarmonics& of = moments_[mixture.cell[i]];
-    float sum = 0.0F;
-    for (std::size_t k = 0; k < kCloudMoments; ++k) sum += factors[k] * of[k];
-    source += mixture.weight[i] * sum;
-  }
+  for (std::size_t k = 0; k < kCloudMoments; ++k) source += factors[k] * moments[k];
   return source;
 }
 

@@ -50,8 +50,11 @@ class CloudMoments {
 
   [[nodiscard]] const CloudCells& cells() const { return *cells_; }
   [[nodiscard]] const CloudHarmonics& Of(std::size_t cell) const { return moments_[cell]; }
+  [[nodiscard]] CloudHarmonics Of(const CloudCells::Mixture& mixture) const;
   /// Returns the moments at a point; 0 where no cloud is near.
-  [[nodiscard]] CloudHarmonics At(const glm::dvec3& point) const;
+  [[nodiscard]] CloudHarmonics At(const glm::dvec3& point) const {
+    return Of(cells_->Around(point));
+  }
   /// Returns the sum of moments times factors (CloudOptics::SourceFactors).
   [[nodiscard]] float Source(const CloudCells::Mixture& mixture,
                              const CloudHarmonics& factors) const;

@@ -69,7 +69,8 @@ PeakPlace PlaceOfAngle(double cos_scattering) {
 PeakPlace PlaceOfDepth(double depth) {
   constexpr double kDeepest = ForwardPeak::kDeepest;
   static const double per_depth = (kDepths - 1) / std::log(kDeepest / kShallowest);
-  const double at = per_depth * std::log(std::clamp(depth, kShallowest, kDeepest) / kShallowest);
+  const auto relative = static_cast<float>(std::clamp(depth, kShallowest, kDeepest) / kShallowest);
+  const double at = per_depth * static_cast<double>(std::log(relative));
   const auto node = std::min(static_cast<std::size_t>(at), kDepths - 2);
   return {node, at - static_cast<double>(node)};
 }
