@@ -7,6 +7,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
+#include "renderer/media/eddington_slab.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 /// Skylight is attenuated in a layer like a beam of this zenith cosine: the diffusivity factor 1.66 of
 /// Elsasser (1942).
 constexpr double kSkyCosine = 0.6;
-constexpr int kFogStreams = 8;
+constexpr int kGlowNodes = 65;
 
 Spectrum NotNegative(Spectrum light) {
   for (std::size_t band = 0; band < light.size(); ++band) {
@@ -23,15 +24,14 @@ Spectrum NotNegative(Spectrum light) {
   return light;
 }
 
-/// Returns the azimuth of a direction from the vertical plane of the light.
-double AzimuthFrom(const glm::dvec3& to_light, const glm::dvec3& direction) {
-  return std::atan2(direction.y, direction.x) - std::atan2(to_light.y, to_light.x);
-}
-
-/// Returns how light travels that reaches an eye against its viewing direction. Light of the sun
-/// travels with azimuth 0.
-LightWay WayInto(const glm::dvec3& look, const glm::dvec3& to_light) {
-  return {-look.z, AzimuthFrom(to_light, look)};
+std::vector<double> AltitudesOver(const ExponentialLayer& layer) {
+  constexpr double kEndless_m = 8000.0;
+  const double step = std::isinf(layer.scale_height_m()) ? kEndless_m : layer.scale_height_m();
+  std::vector<double> altitudes;
+  for (const double share : {0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
+    altitudes.push_back(layer.bottom_m() + share * step);
+  }
+  return altitudes;
 }
 
 }  // namespace
@@ -40,56 +40,51 @@ LayerLight::LayerLight(const ExponentialLayer& layer, const MultipleScattering& 
                        const LightDirection& light, const Spectrum& in_air)
     : layer_(layer),
       to_light_(light.seen),
-      chi_(LegendreCoefficients(layer.optics().phase,
-                                std::max(diffuse.options().degree, kFogStreams))),
+      chi_(LegendreCoefficients(layer.optics().phase, diffuse.options().degree)),
       extinction_per_m_(layer.optics().extinction_per_m[0]),
       depth_(extinction_per_m_ * layer.ColumnAbove(layer.bottom_m())),
-      albedo_(layer.optics().scattering_per_m[0] / extinction_per_m_),
-      sky_(diffuse, {0.0, 0.0, 1.0}, light.for_air, {std::max(layer.bottom_m(), 0.0)}),
-      ground_(diffuse.bands()),
-      clear_sky_(diffuse.SkyIrradiance(std::max(layer.bottom_m(), 0.0), sky_.mu_s())) {
-  // Rounding of an integral must not exceed the range.
-  for (double& chi : chi_) chi = std::clamp(chi, -1.0, 1.0);
-  chi_[0] = 1.0;
-  peak_scale_ = DeltaScaled({depth_, albedo_, chi_}, kFogStreams).scale;
+      sky_(diffuse, {0.0, 0.0, 1.0}, light.for_air, AltitudesOver(layer)),
+      ground_(diffuse.bands()) {
+  const double albedo = layer.optics().scattering_per_m[0] / extinction_per_m_;
+  peak_scale_ = 1.0 - albedo * PeakFraction({albedo, chi_[1], chi_[2]});
+  broad_.kind = PhaseKind::kHenyeyGreenstein;
+  broad_.g = std::clamp(chi_[1], -0.99, 0.99);
+  const Spectrum sky = diffuse.SkyIrradiance(std::max(layer.bottom_m(), 0.0), sky_.mu_s());
   const std::vector<double>& ground_albedo = diffuse.medium().ground_albedo;
   for (std::size_t band = 0; band < ground_.size(); ++band) {
-    ground_[band] =
-        static_cast<float>(ground_albedo[band] / kPi) *
-        (static_cast<float>(std::max(to_light_.z, 0.0)) * in_air[band] + clear_sky_[band]);
+    ground_[band] = static_cast<float>(ground_albedo[band] / kPi) *
+                    (static_cast<float>(std::max(to_light_.z, 0.0)) * in_air[band] + sky[band]);
   }
   sky_ = sky_.WithoutGround(ground_);
   // This is the cosine for which the plane layer is as deep towards the sun as the layer over a
   // round planet.
   const double slant = layer.ColumnToSpace({0.0, 0.0, layer.bottom_m()}, to_light_) /
                        layer.ColumnAbove(layer.bottom_m());
-  for (std::size_t band = 0; band < ground_.size(); ++band) {
-    bands_.push_back(Solved(band, std::clamp(1.0 / slant, 1e-3, 1.0),
-                            static_cast<double>(in_air[band]),
-                            static_cast<double>(clear_sky_[band]), ground_albedo[band]));
+  Solve(albedo, std::clamp(1.0 / slant, 1e-3, 1.0), in_air, sky, ground_albedo);
+}
+
+void LayerLight::Solve(double albedo, double mu0, const Spectrum& sun, const Spectrum& sky,
+                       const std::vector<double>& ground_albedo) {
+  const SlabScattering scattering{albedo, chi_[1], chi_[2]};
+  for (Glow* glow : {&of_sun_, &of_sky_}) {
+    glow->mean.assign(kGlowNodes, Spectrum(sun.size()));
+    glow->slope.assign(kGlowNodes, Spectrum(sun.size()));
   }
-}
-
-Spectrum LayerLight::SkyFrom(const LightWay& way) const {
-  const double sine = std::sqrt(std::max(1.0 - way.mu * way.mu, 0.0));
-  const double azimuth = std::atan2(to_light_.y, to_light_.x) + way.azimuth;
-  const std::vector<double> all(chi_.size(), 1.0);
-  return NotNegative(
-      sky_.Towards({sine * std::cos(azimuth), sine * std::sin(azimuth), -way.mu}, all).front());
-}
-
-LayerLight::Band LayerLight::Solved(std::size_t band, double mu_s, double sun, double sky,
-                                    double ground_albedo) const {
-  LayerStack stack({{depth_, albedo_, chi_}}, ground_albedo, kFogStreams);
-  const LayerGlow of_sun(stack, LayerField::UnderSun(stack, mu_s), mu_s);
-  const LayerGlow of_sky(
-      stack,
-      LayerField::UnderSky(
-          stack, [&](const LightWay& way) { return static_cast<double>(SkyFrom(way)[band]); }),
-      0.0);
-  // Moments of low degree miss some of the irradiance.
-  const double found = of_sky.fluxes().front().down;
-  return {std::move(stack), of_sun, of_sky, sun, found > 0.0 ? sky / found : 0.0};
+  for (std::size_t band = 0; band < sun.size(); ++band) {
+    const EddingtonSlab under_sun(scattering, depth_, ground_albedo[band], mu0);
+    const EddingtonSlab under_sky(scattering, depth_, ground_albedo[band], kSkyCosine);
+    const auto beam = static_cast<double>(sun[band]);
+    const double sky_beam = static_cast<double>(sky[band]) / kSkyCosine;
+    for (std::size_t i = 0; i < kGlowNodes; ++i) {
+      const double u = static_cast<double>(i) / (kGlowNodes - 1);
+      const SlabField sunny = under_sun.At(depth_ * u * u * u * u);
+      const SlabField dull = under_sky.At(depth_ * u * u * u * u);
+      of_sun_.mean[i][band] = static_cast<float>(beam * sunny.mean);
+      of_sun_.slope[i][band] = static_cast<float>(beam * sunny.slope);
+      of_sky_.mean[i][band] = static_cast<float>(sky_beam * dull.mean);
+      of_sky_.slope[i][band] = static_cast<float>(sky_beam * dull.slope);
+    }
+  }
 }
 
 double LayerLight::DepthAbove(double altitude_m) const {
@@ -109,30 +104,28 @@ Spectrum LayerLight::At(const std::vector<Spectrum>& nodes, const AxisPosition& 
 
 LayerLight::Look LayerLight::LookAlong(const glm::dvec3& look) const {
   const double cosine = glm::dot(look, to_light_);
-  const LightWay way = WayInto(look, to_light_);
-  const GlowDirection direction(bands_.front().stack, way);
-  const Spectrum sky = SkyFrom(way);
-  const std::vector<Spectrum> dark(kGlowNodes, Spectrum(bands_.size()));
-  Look seen{Phase(layer_.optics().phase, cosine), dark, dark};
-  for (std::size_t band = 0; band < bands_.size(); ++band) {
-    const Band& lit = bands_[band];
-    const std::vector<double> of_sun = lit.of_sun.Towards(direction, 0.0);
-    const std::vector<double> of_sky =
-        lit.of_sky.Towards(direction, static_cast<double>(sky[band]));
-    // Series of low degree are negative where little light arrives.
-    for (std::size_t node = 0; node < kGlowNodes; ++node) {
-      seen.of_sun[node][band] = static_cast<float>(std::max(lit.sun * of_sun[node], 0.0));
-      seen.of_sky[node][band] = static_cast<float>(std::max(lit.sky * of_sky[node], 0.0));
-    }
-  }
-  return seen;
+  return {Phase(layer_.optics().phase, cosine), Phase(broad_, cosine), look.z,
+          sky_.Towards(look, chi_)};
 }
 
 LayerLight::Scattered LayerLight::At(const Look& look, double altitude_m, const Spectrum& sun,
                                      const Spectrum& lit, double slant_depth) const {
-  const auto once = static_cast<float>(look.phase * std::exp(-peak_scale_ * slant_depth));
+  const double direct = std::exp(-slant_depth);
+  const double taken_along = std::exp(-peak_scale_ * slant_depth) - direct;
+  const auto once = static_cast<float>(look.phase * direct + look.broad_phase * taken_along);
+  // Light that reaches the eye travels against the viewing direction: downwards if the view goes
+  // upwards.
+  const auto tilt = static_cast<float>(chi_[1] * look.down);
   const AxisPosition place = PlaceOf(altitude_m);
-  return {once * sun + lit * At(look.of_sun, place), At(look.of_sky, place)};
+  return {once * sun + lit * Field(of_sun_, place, tilt),
+          SkyLeft(altitude_m) * NotNegative(sky_.At(look.sky, altitude_m)) +
+              Field(of_sky_, place, tilt)};
+}
+
+// At the edge of a layer, a radiance that is linear in the cosine is negative in directions from
+// which no light arrives.
+Spectrum LayerLight::Field(const Glow& glow, const AxisPosition& place, float tilt) {
+  return NotNegative(At(glow.mean, place) + tilt * At(glow.slope, place));
 }
 
 float LayerLight::SkyLeft(double altitude_m) const {
@@ -141,27 +134,13 @@ float LayerLight::SkyLeft(double altitude_m) const {
 
 Spectrum LayerLight::OnSurface(double altitude_m, double cos_up) const {
   const AxisPosition place = PlaceOf(altitude_m);
-  const double from_above = 0.5 * (1.0 + cos_up), from_below = 1.0 - from_above;
-  const auto all = [&](const LayerGlow& glow) {
-    double sum = 0.0;
-    for (const int end : {0, 1}) {
-      const LayerFluxes& fluxes = glow.fluxes()[place.low + static_cast<std::size_t>(end)];
-      sum += static_cast<double>(place.Weight(end)) *
-             (from_above * fluxes.down + from_below * fluxes.up);
-    }
-    return sum;
-  };
-  // Part of the clear sky, and of the ground below it, is counted as not scattered.
-  const auto left = static_cast<double>(SkyLeft(altitude_m));
-  Spectrum irradiance(bands_.size());
-  for (std::size_t band = 0; band < bands_.size(); ++band) {
-    const Band& lit = bands_[band];
-    const double clear = from_above * static_cast<double>(clear_sky_[band]) +
-                         from_below * kPi * static_cast<double>(ground_[band]);
-    irradiance[band] =
-        static_cast<float>(lit.sun * all(lit.of_sun) + lit.sky * all(lit.of_sky) - left * clear);
-  }
-  return NotNegative(irradiance);
+  const auto tilt = static_cast<float>(2.0 * kPi / 3.0 * cos_up);
+  Spectrum irradiance =
+      static_cast<float>(kPi) * (At(of_sun_.mean, place) + At(of_sky_.mean, place)) +
+      tilt * (At(of_sun_.slope, place) + At(of_sky_.slope, place));
+  // The light of the ground is already part of the clear sky's irradiance of a slope.
+  const auto twice = static_cast<float>(kPi * 0.5 * (1.0 - cos_up)) * SkyLeft(altitude_m);
+  return NotNegative(irradiance + -twice * ground_);
 }
 
 }  // namespace alpenglow::renderer

@@ -18,7 +18,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-enum Quantity { kDirect, kGlow, kSkyLight, kQuantities };
+enum Quantity { kDirect, kBroad, kGlow, kSkyLight, kQuantities };
 
 glm::vec4 InFloats(const Spectrum& light) {
   glm::vec4 values(0.0F);
@@ -28,7 +28,7 @@ glm::vec4 InFloats(const Spectrum& light) {
   return values;
 }
 
-/// The quantities, summed from the eye on.
+/// The four quantities, summed from the eye on.
 using Sums = std::array<glm::vec4, kQuantities>;
 
 class LayerMarch {
@@ -143,15 +143,16 @@ class LayerMarch {
     Spectrum all(sun.size()), none(sun.size());
     std::ranges::fill(all.values(), 1.0F);
     const LayerLight::Scattered glow = light_.At(look, altitude, none, all, slant);
-    const auto direct = static_cast<float>(std::exp(-light_.peak_scale() * slant));
+    const auto direct = static_cast<float>(std::exp(-slant));
+    const auto with_peak = static_cast<float>(std::exp(-light_.peak_scale() * slant));
     const auto scattered = static_cast<float>(layer_.optics().scattering_per_m[0] /
                                               layer_.optics().extinction_per_m[0]);
     ViewRay ray{eye_.z, direction.z, 0.0, 0.0};
     ray.length_m = step.middle_m;
     ray.passes_ground = true;
     const Spectrum left = scattered * air_.single_scattering().TransmittanceAlong(ray);
-    return {InFloats(direct * (left * sun)), InFloats(left * glow.of_sun),
-            InFloats(left * glow.of_sky)};
+    return {InFloats(direct * (left * sun)), InFloats((with_peak - direct) * (left * sun)),
+            InFloats(left * glow.of_sun), InFloats(left * glow.of_sky)};
   }
 
   const ExponentialLayer& layer_;
@@ -216,6 +217,7 @@ LayerMap MakeLayerMap(const ExponentialLayer& layer, const SolvedAir& air,
                       const EyeUnderLight& under, const LayerMapSize& size) {
   ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
   const LayerMarch march(layer, air, under);
+  const std::vector<double> chi = LegendreCoefficients(layer.optics().phase, 2);
   LayerMap map;
   map.eye = under;
   map.size = size;
@@ -227,6 +229,7 @@ LayerMap MakeLayerMap(const ExponentialLayer& layer, const SolvedAir& air,
   map.depth = map.extinction_per_m * layer.ColumnAbove(layer.bottom_m());
   map.peak_scale = march.light().peak_scale();
   map.phase = layer.optics().phase;
+  map.broad_g = std::clamp(chi[1], -0.99, 0.99);
   AddRays(march, map);
   AddSurfaces(march, layer, map);
   return map;

@@ -2,11 +2,12 @@
 // The light in a layer (LayerLight) summed along rays, for interpolation on the GPU. Values are per unit
 // solar irradiance. Along a ray they are relative to the fraction of light that the layer removes,
 //
-//   L(d) = (1 - T(d)) [p A + G + K],    T = exp(-tau(d)), of the layer alone
+//   L(d) = (1 - T(d)) [p A + p' B + G + K],    T = exp(-tau(d)), of the layer alone
 //
-// A is the light of the sun itself with that in its forward peak, scattered with the layer's phase
-// function p; G is the glow of the sun in the layer; K is the light of the sky. Tables are over the sine of the ray's elevation, its azimuth from the sun and
-// (1 - T(d)) / (1 - T(end)), where the ray ends at the bare planet or in space. A and G are for
+// A is the light of the sun itself, scattered with the layer's phase function p; B is the light in
+// its forward peak, scattered with the lobe p'; G is the glow of the sun in the layer; K is the light
+// of the sky. Tables are over the sine of the ray's elevation, its azimuth from the sun and
+// (1 - T(d)) / (1 - T(end)), where the ray ends at the bare planet or in space. A, B and G are for
 // open ground: terrain does not shade them.
 #pragma once
 
@@ -21,24 +22,24 @@
 
 namespace alpenglow::renderer {
 
-/// Resolution of a map. Its mean difference from MediaLight is 0.15 % by day and 0.5 % with the sun
+/// Resolution of a map. Its mean difference from MediaLight is 0.1 % by day and 0.5 % with the sun
 /// on the horizon, where light in the layer decreases by a factor e every few metres (99 %: 2 % and 5 %;
 /// kFineLayerMap: half of all these). The computation time is proportional to elevations times azimuths.
 struct LayerMapSize {
-  int elevations = 64;  // even: half of them above the horizon
-  int azimuths = 32;    // from 0 to pi
+  int elevations = 128;  // even: half of them above the horizon
+  int azimuths = 16;     // from 0 to pi
   int depths = 12;
 
   bool operator==(const LayerMapSize&) const = default;
 };
-inline constexpr LayerMapSize kCoarseLayerMap{24, 24, 8};
-inline constexpr LayerMapSize kFineLayerMap{96, 48, 16};
+inline constexpr LayerMapSize kCoarseLayerMap{48, 12, 8};
+inline constexpr LayerMapSize kFineLayerMap{192, 24, 16};
 
 /// Table of the light in a layer. It is immutable and needs no GPU.
 struct LayerMap {
   EyeUnderLight eye;
   LayerMapSize size;
-  /// A, G and K in this order: [((quantity * depths + depth) * azimuths + azimuth) * elevations
+  /// A, B, G and K in this order: [((quantity * depths + depth) * azimuths + azimuth) * elevations
   /// + elevation].
   std::vector<glm::vec4> light;
   /// Irradiance of the layer's own light on level ground, and the additional irradiance on a vertical
@@ -50,6 +51,7 @@ struct LayerMap {
   double depth;       // vertical optical depth of the layer
   double peak_scale;  // factor on optical depths that excludes the forward peak
   PhaseFunction phase;
+  double broad_g;
 };
 
 /// @param air  medium of at most four bands.

@@ -30,7 +30,7 @@ LayerBlock LayerBlockOf(const LayerMap& map, const EyeUnderLight& now) {
                  map.top_m / kMetres};
   block.eye = {std::max(now.altitude_m, 0.0) / kMetres, map.radius_m / kMetres, map.depth,
                map.peak_scale};
-  block.sun = {glm::vec3(now.light.seen), 0.0};
+  block.sun = {glm::vec3(now.light.seen), map.broad_g};
   block.phase = ParametersOf(map.phase);
   block.map_size = {map.size.elevations, map.size.azimuths, map.size.depths, 0.0};
   return block;
@@ -61,7 +61,7 @@ void LayerPainter::Connect(const ShaderProgram& program) const {
 void LayerPainter::Upload(const LayerMap& map) {
   BindTexture(units_.first, GL_TEXTURE_3D, light_);
   UploadTexture(GL_TEXTURE_3D, light_,
-                {GL_RGBA32F, map.size.elevations, map.size.azimuths, 3 * map.size.depths, GL_RGBA,
+                {GL_RGBA32F, map.size.elevations, map.size.azimuths, 4 * map.size.depths, GL_RGBA,
                  GL_FLOAT, map.light.data()});
   BindTexture(units_.first + 1, GL_TEXTURE_2D, surface_);
   UploadTexture(GL_TEXTURE_2D, surface_,

@@ -12,7 +12,6 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/airlight.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/math/numerics.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/illumination/sky_moments.h"
 #include "renderer/media/layer_light.h"
@@ -24,7 +23,6 @@
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/noise_grid.h"
-#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/solved_media.h"
 
 namespace alpenglow::renderer {
@@ -236,35 +234,6 @@ TEST(MediaLight, WhiteFogOverBlackGroundConservesEnergy) {
         static_cast<double>(below.added[band] + below.left[band] * sky[band] + above.added[band]) +
         mu_s * static_cast<double>(beam[band] * sun[band]);
     EXPECT_NEAR(out / in, 1.0, 5e-3);
-  }
-}
-
-// The irradiance of a surface above fog is that of the rays that come from the fog.
-TEST(MediaLight, RaysCarryTheLightThatLeavesFog) {
-  Medium medium = MediumPreset("bruneton2017");
-  medium.ground_albedo.assign(3, 0.0);
-  const MediaStage stage(tests::SolvedAsClearAir(medium));
-  const MediaLight lit = stage.Lit({FogMedium(0.02, 60.0)});
-  constexpr double kEye_m = 500.0;
-  const SkyThroughMedia above = lit.SkyOnSurface(kEye_m, -1.0, SkyThroughMedia::Clear(3));
-  const GaussRule& zenith = GaussLegendre(8);
-  const int azimuths = tests::ScaledDown(32, 8);
-  Spectrum flux(3);
-  for (std::size_t i = 0; i < zenith.node.size(); ++i) {
-    for (int k = 0; k < azimuths; ++k) {
-      const double azimuth = 2.0 * kPi * (k + 0.5) / azimuths, mu = zenith.node[i];
-      const double sine = std::sqrt(1.0 - mu * mu);
-      const glm::dvec3 direction(sine * std::cos(azimuth), sine * std::sin(azimuth), -mu);
-      const MarchedLight light = lit.Along({0.0, 0.0, kEye_m}, direction, 4000.0, nullptr);
-      flux =
-          flux + static_cast<float>(2.0 * kPi / azimuths * zenith.weight[i] * mu) * light.radiance;
-    }
-  }
-  for (std::size_t band = 0; band < 3; ++band) {
-    const double expected =
-        static_cast<double>(above.added[band] * stage.light.source.irradiance[band]);
-    EXPECT_NEAR(static_cast<double>(flux[band]) / expected, 1.0, 0.05)
-        << "the air takes up to 2 %, the widest rays end below the fog or are long";
   }
 }
 

@@ -3,7 +3,6 @@
 // the layer: LayerBlock of scene_layer.h. Frame: east, north, up at the eye. Lengths are in
 // kilometres; light is per unit solar irradiance. The layer is grey.
 #define MEDIA_STRETCHES 4
-#define LAYER_QUANTITIES 3.0  // of the map: light of the sun, its glow, light of the sky
 
 const float kOutOfMedia_km = 1e3;  // length of rays that hit nothing
 
@@ -12,7 +11,7 @@ layout(std140) uniform Layer {
                      // the air
   vec4 layer_eye;  // altitude of the eye; radius of the planet; vertical optical depth of the layer;
                    // factor of optical depths without the forward peak
-  vec4 layer_sun;       // unit vector
+  vec4 layer_sun;  // unit vector; g of the lobe that scatters the forward peak's light
   vec4 layer_phase;     // g, g of the second lobe, its weight, alpha
   vec4 layer_map_size;  // elevations, azimuths, depths
   vec4 layer_other_sun;  // as layer_sun, of the second light
@@ -84,11 +83,11 @@ vec3 LayerPlace(vec3 direction, float taken) {
   float root = sqrt(abs(direction.z));
   float elevation = 0.5 + (direction.z < 0.0 ? -0.5 : 0.5) * root;
   return vec3(TexelFromUnit(elevation, layer_map_size.x), TexelFromUnit(azimuth, layer_map_size.y),
-              TexelFromUnit(share, layer_map_size.z) / LAYER_QUANTITIES);
+              0.25 * TexelFromUnit(share, layer_map_size.z));
 }
 
 vec4 LayerQuantity(vec3 place, float number) {
-  return TEXEL_OF_LIGHT(layer_light_map, other_layer_light_map, place + vec3(0.0, 0.0, number / LAYER_QUANTITIES));
+  return TEXEL_OF_LIGHT(layer_light_map, other_layer_light_map, place + vec3(0.0, 0.0, 0.25 * number));
 }
 
 // Returns the scattered light of the sun alone, above ground without shadows. Terrain shadows
@@ -98,7 +97,8 @@ vec4 MediaSunTo(vec3 direction, float distance_km) {
   vec3 place = LayerPlace(direction, taken);
   float cosine = dot(direction, LAYER_SUN.xyz);
   return taken * (LAYER_PHASE(cosine, layer_phase) * LayerQuantity(place, 0.0) +
-                  LayerQuantity(place, 1.0));
+                  PhaseHenyeyGreenstein(cosine, LAYER_SUN.w) * LayerQuantity(place, 1.0) +
+                  LayerQuantity(place, 2.0));
 }
 
 MediaAlong MediaTo(vec3 direction, float distance_km) {
@@ -106,7 +106,8 @@ MediaAlong MediaTo(vec3 direction, float distance_km) {
   vec3 place = LayerPlace(direction, 1.0 - left);
   float cosine = dot(direction, LAYER_SUN.xyz);
   vec4 source = LAYER_PHASE(cosine, layer_phase) * LayerQuantity(place, 0.0) +
-                LayerQuantity(place, 1.0) + LayerQuantity(place, 2.0);
+                PhaseHenyeyGreenstein(cosine, LAYER_SUN.w) * LayerQuantity(place, 1.0) +
+                LayerQuantity(place, 2.0) + LayerQuantity(place, 3.0);
   return MediaAlong(vec4(left), (1.0 - left) * source);
 }
 
