@@ -25,7 +25,7 @@ namespace {
 constexpr double kCellsAlongBeam = 4.0;
 constexpr double kLeastAcross = 0.25;  // cells are at most four times as long on the ground
 constexpr double kFine_m = 120.0, kFineDepth = 8.0;
-constexpr double kFirstStep_m = 5.0, kStepGrowth = 1.3;
+constexpr double kFirstStep_m = 5.0, kStepGrowth = 1.2;
 // Beams and levels of a block, in each direction. A word of bits has a whole number of blocks.
 constexpr int kBeamsOfBlock = 4;
 

@@ -129,7 +129,7 @@ void ExpectUnitFlux(const CloudPhases& phases) {
   const CloudField field = tests::SphereClouds(0.05);
   const glm::dvec3 to_sun = Towards(35.0, 20.0);
   const CloudPathTracer tracer(field, {phases, 1.0}, {to_sun});
-  const int paths = tests::ScaledDown(50000, 8000);
+  const int paths = tests::ScaledDown(50000, 25000);  // few have great weights
   const CloudEstimate up = FluxByPaths(tracer, 1600.0, -1.0, to_sun.z, paths);
   const CloudEstimate down = FluxByPaths(tracer, 900.0, 1.0, to_sun.z, paths);
   const CloudFluxes fluxes = tracer.Fluxes(
