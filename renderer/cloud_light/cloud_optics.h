@@ -15,7 +15,7 @@
 
 #include "atmosphere/medium/phase.h"
 #include "renderer/cloud_light/cloud_path_tracer.h"
-#include "renderer/cloud_light/forward_peak.h"
+#include "renderer/cloud_phase/forward_peak.h"
 #include "renderer/clouds/cloud_field.h"
 #include "renderer/layer.h"
 

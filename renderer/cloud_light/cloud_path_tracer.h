@@ -24,8 +24,8 @@
 #include "atmosphere/reference/path_sampling.h"
 #include "atmosphere/reference/sun_lobe.h"
 #include "renderer/cloud_light/cloud_low_sun.h"
-#include "renderer/cloud_light/cloud_phase.h"
 #include "renderer/cloud_light/cloud_tracking.h"
+#include "renderer/cloud_phase/cloud_phase.h"
 #include "renderer/clouds/cloud_field.h"
 #include "renderer/layer.h"
 

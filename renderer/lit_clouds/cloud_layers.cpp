@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/cloud_light/droplet_phase.h"
-#include "renderer/cloud_light/ice_phase.h"
+#include "renderer/cloud_phase/droplet_phase.h"
+#include "renderer/cloud_phase/ice_phase.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -22,8 +22,8 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/reference/path_tracer.h"
-#include "renderer/cloud_light/cloud_phase.h"
 #include "renderer/cloud_light/cloud_tracking.h"
+#include "renderer/cloud_phase/cloud_phase.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/layer.h"
 #include "renderer/lit_clouds/cloud_layers.h"

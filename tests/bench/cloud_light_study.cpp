@@ -23,7 +23,7 @@
 #include "atmosphere/math/constants.h"
 #include "renderer/cloud_light/cloud_light.h"
 #include "renderer/cloud_light/cloud_light_fluxes.h"
-#include "renderer/cloud_light/droplet_phase.h"
+#include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/report/cloud_views.h"
 

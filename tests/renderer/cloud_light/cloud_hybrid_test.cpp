@@ -18,7 +18,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "renderer/cloud_light/cloud_light.h"
-#include "renderer/cloud_light/droplet_phase.h"
+#include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/layer.h"
 #include "tests/fixtures/media.h"

@@ -13,7 +13,7 @@
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/medium/phase_table.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
-#include "renderer/cloud_light/droplet_phase.h"
+#include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/layer.h"
 #include "tests/fixtures/media.h"

@@ -17,7 +17,7 @@
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/reference/path_sampling.h"
 #include "atmosphere/reference/path_tracer.h"
-#include "renderer/cloud_light/droplet_phase.h"
+#include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/layer.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/polarised_slab.h"

@@ -17,7 +17,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/cloud_light/cloud_path_tracer.h"
-#include "renderer/cloud_light/droplet_phase.h"
+#include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/path_tracing/traceable_scene.h"
 #include "renderer/picture/prepared_scene.h"
 #include "renderer/picture/render.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/cloud_light/forward_peak.h"
+#include "renderer/cloud_phase/forward_peak.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "renderer/cloud_light/ice_phase.h"
+#include "renderer/cloud_phase/ice_phase.h"
 #include "renderer/layer.h"
 #include "tests/fixtures/media.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/cloud_light/cloud_phase.h"
+#include "renderer/cloud_phase/cloud_phase.h"
 
 #include <algorithm>
 #include <cmath>

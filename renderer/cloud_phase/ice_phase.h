@@ -13,7 +13,7 @@
 // that lie level are not modelled, nor are the parhelia and arcs that they make.
 #pragma once
 
-#include "renderer/cloud_light/cloud_phase.h"
+#include "renderer/cloud_phase/cloud_phase.h"
 
 namespace alpenglow::renderer {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/cloud_light/ice_phase.h"
+#include "renderer/cloud_phase/ice_phase.h"
 
 #include <gtest/gtest.h>
 

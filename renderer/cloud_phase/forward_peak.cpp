@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/cloud_light/forward_peak.h"
+#include "renderer/cloud_phase/forward_peak.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

@@ -7,7 +7,7 @@
 // all radii and visible wavelengths, because the index of water hardly depends on the wavelength.
 #pragma once
 
-#include "renderer/cloud_light/cloud_phase.h"
+#include "renderer/cloud_phase/cloud_phase.h"
 
 namespace alpenglow::renderer {
 

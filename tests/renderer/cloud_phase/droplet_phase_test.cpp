@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/cloud_light/droplet_phase.h"
+#include "renderer/cloud_phase/droplet_phase.h"
 
 #include <gtest/gtest.h>
 
