@@ -144,4 +144,31 @@ CloudFactor FitCloudFactor(const CloudField& field, const CloudGather& gather,
   return factor;
 }
 
+CloudFactor WithFlux(const CloudFactor& factor, const CloudGather& gather,
+                     const CloudPlaneRays& rays, double flux) {
+  constexpr int kRaysOfFlux = 8192;                       // through each plane
+  std::vector<std::array<double, 2>> light(kRaysOfFlux);  // of the first order, and of all
+  tbb::parallel_for(0, kRaysOfFlux, [&](int i) {
+    std::array<double, 2>& sum = light[static_cast<std::size_t>(i)];
+    for (const CloudPlaneRay& ray : {rays.FromTop(i + 1), rays.FromBase(i + 1)}) {
+      if (ray.weight <= 0.0) continue;
+      const CloudRayParts parts = gather.Along(ray.ray, kInfinite_m);
+      sum[0] += ray.weight / kRaysOfFlux * parts.first;
+      sum[1] += ray.weight / kRaysOfFlux * factor.Sun(parts);
+    }
+  });
+  double first = 0.0, all = 0.0;
+  for (const std::array<double, 2>& each : light) {
+    first += each[0];
+    all += each[1];
+  }
+  if (!(all > first)) return factor;
+  CloudFactor scaled;
+  for (std::size_t i = 0; i < kCloudFactorNodes; ++i) {
+    scaled.node[i] = std::clamp((flux - first) / (all - first) * factor.node[i], kLeastCloudFactor,
+                                kMostCloudFactor);
+  }
+  return scaled;
+}
+
 }  // namespace alpenglow::renderer

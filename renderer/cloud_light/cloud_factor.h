@@ -11,8 +11,11 @@
 // more noise, of which most is in few bright ones: theirs counts relative to the square. Factors are
 // expected to be those that many fields have, times a common number; relative to that, to scatter by 0.2
 // and to differ by 0.1 from node to node. These expectations count against the errors of the rays, so
-// that noise of the paths neither makes factors alternate nor flickers from frame to frame of a film.
-// The fit holds for one field and one sun.
+// that noise of the paths does not make factors alternate. The fit holds for one field and one sun.
+//
+// Noise of the paths would make the light of a film flicker. In a periodic field all factors are
+// therefore multiplied by one number, with which the light along rays through top and base has the flux
+// of the moments: these lose no light.
 #pragma once
 
 #include <array>
@@ -22,6 +25,7 @@
 
 #include "renderer/cloud_light/cloud_gather.h"
 #include "renderer/cloud_light/cloud_path_tracer.h"
+#include "renderer/cloud_light/cloud_plane_rays.h"
 
 namespace alpenglow::renderer {
 
@@ -59,6 +63,13 @@ struct CloudFactor {
 [[nodiscard]] CloudFactor FitCloudFactor(const CloudField& field, const CloudGather& gather,
                                          const CloudPathTracer& tracer,
                                          const CloudFactorOptions& options = {});
+
+/// Returns a factor in the same ratios with which the light along rays has a flux, apart from limits
+/// as above; the factor itself if there is no light of higher orders.
+/// @param gather  of a periodic field, with a sun above it. @param flux  through top and base, without
+///     light that is not scattered, for a unit irradiance across the sun's beam.
+[[nodiscard]] CloudFactor WithFlux(const CloudFactor& factor, const CloudGather& gather,
+                                   const CloudPlaneRays& rays, double flux);
 
 inline constexpr double kLeastCloudFactor = 0.25, kMostCloudFactor = 4.0;
 

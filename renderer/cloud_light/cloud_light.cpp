@@ -118,6 +118,13 @@ struct CloudLight::SunLight {
         gather(*light.field, *light.optics, depths, moments.moments, light.sky.moments,
                light.ground ? &light.ground->moments : nullptr, light.options.gather) {
     factor = FactorAfter(light, 0);
+    if (light.options.factor.rays > 0 && depths.map() && light.field->lattice().is_periodic) {
+      const CloudLattice& lattice = light.field->lattice();
+      factor = WithFlux(factor, gather,
+                        {*light.field, glm::dvec2(lattice.origin_m), glm::dvec2(lattice.size_m()),
+                         to_sun, light.optics->phase()},
+                        moments.up_at_top + moments.down_at_base);
+    }
     const bool is_periodic = light.field->lattice().is_periodic;
     const double repeated = 1.0 / (1.0 - light.ground_albedo * light.ReturnedToGround());
     irradiance.direct = std::max(to_sun.z, 0.0) * (is_periodic ? depths.MeanTransmittance() : 1.0);

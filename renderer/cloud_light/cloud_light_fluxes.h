@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Fluxes of sunlight by column, from the radiances of the fast method along rays.
-//
-// Rays begin at evenly spread points of the planes through the top and the base of a field, in
-// random directions: upwards at the top by the law of cosines, downwards at the base by half of it
-// and half of the phase function p around the sun, where light is bright. With the density
-// q = cos / (2 pi) + p / 2 a ray counts L cos / q.
+// Fluxes of sunlight by column, from the radiances of the fast method along rays through the top and
+// the base of a field (cloud_plane_rays.h).
 #pragma once
 
 #include <array>
