@@ -383,10 +383,13 @@ double MoleculeDensity(const Medium& medium, double altitude_m) {
          deficit.share * std::exp(-altitude_m / deficit.scale_height_m);
 }
 
-double MoleculeColumn_m(const Medium& medium) {
+double MoleculeColumn_m(const Medium& medium, double altitude_m) {
   const MoleculeDeficit& deficit = medium.rayleigh_deficit;
-  return (1.0 + deficit.share) * medium.rayleigh_scale_height_m -
-         deficit.share * deficit.scale_height_m;
+  const auto column_m = [&](double scale_height_m) {
+    return scale_height_m * std::exp(-altitude_m / scale_height_m);
+  };
+  return (1.0 + deficit.share) * column_m(medium.rayleigh_scale_height_m) -
+         deficit.share * column_m(deficit.scale_height_m);
 }
 
 double OsculatingRadius(const Medium& medium, double latitude_rad) {

@@ -159,9 +159,9 @@ struct Medium {
 
 /// Returns the density of the molecules relative to altitude 0.
 [[nodiscard]] double MoleculeDensity(const Medium& medium, double altitude_m);
-/// Returns the column of the molecules above altitude 0, divided by their density at altitude 0
+/// Returns the column of the molecules above an altitude, divided by their density at altitude 0
 /// [m].
-[[nodiscard]] double MoleculeColumn_m(const Medium& medium);
+[[nodiscard]] double MoleculeColumn_m(const Medium& medium, double altitude_m = 0.0);
 
 /// Returns the depolarisation of the molecules at the wavelength of this index.
 [[nodiscard]] inline double Depolarisation(const Medium& medium, std::size_t band) {

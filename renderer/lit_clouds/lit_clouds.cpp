@@ -8,6 +8,9 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/cloud_light/cloud_plane_rays.h"
+#include "renderer/illumination/sky_moments.h"
+#include "renderer/lit_clouds/air_reflection.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -35,16 +38,6 @@ std::vector<double> DiffuseIntensity(const SolvedAir& air, double altitude_m, do
   for (std::size_t band = 0; band < intensity.size(); ++band)
     intensity[band] = std::sqrt(4.0 * kPi) * static_cast<double>(moments[band]);
   return intensity;
-}
-
-/// Returns the layers in a beam [per unit beam]. @param beams  of each layer.
-std::vector<CloudLayerFluxes> LitBy(std::vector<CloudLayerFluxes> layers,
-                                    const std::vector<Spectrum>& beams, std::size_t band) {
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    layers[i].sun_up *= static_cast<double>(beams[i][band]);
-    layers[i].sun_down *= static_cast<double>(beams[i][band]);
-  }
-  return layers;
 }
 
 }  // namespace
@@ -143,22 +136,42 @@ AltitudeRange LitClouds::RangeOf(std::size_t layer) const {
   return {field.base_altitude_m(), field.top_altitude_m()};
 }
 
-Spectrum LitClouds::MeanBeam(double altitude_m, std::size_t of_layer) const {
-  const LocalLight sun = LocalLightAt(geometry_, {0.0, 0.0, altitude_m}, light_);
-  double left = sun.visible_fraction;
+double LitClouds::MeanBeamLeft(double altitude_m, std::size_t of_layer) const {
+  double left = 1.0;
   for (std::size_t other = 0; other < layers(); ++other) {
     if (other != of_layer) left *= Layer(other).sun().MeanTransmittance(altitude_m);
   }
-  return static_cast<float>(left) * air_.BeamLeft(altitude_m, sun.mu_s_effective);
+  return left;
+}
+
+Spectrum LitClouds::MeanBeam(double altitude_m, std::size_t of_layer) const {
+  const LocalLight sun = LocalLightAt(geometry_, {0.0, 0.0, altitude_m}, light_);
+  return static_cast<float>(sun.visible_fraction * MeanBeamLeft(altitude_m, of_layer)) *
+         air_.BeamLeft(altitude_m, sun.mu_s_effective);
+}
+
+std::vector<CloudLayerFluxes> LitClouds::LitBy(const std::vector<Spectrum>& beams, double sky,
+                                               std::size_t band) const {
+  std::vector<CloudLayerFluxes> lit;
+  for (std::size_t i = 0; i < layers(); ++i) {
+    CloudLayerFluxes fluxes = FluxesOf(Layer(i));
+    const auto beam = static_cast<double>(beams[i][band]);
+    const float excess = (sky_on_clouds_[i][band] - 1.0F) * beam_left_[i];
+    const double more = static_cast<double>(excess) * fluxes.sky_up * sky;
+    fluxes.sun_up = beam * fluxes.sun_up + more;
+    fluxes.sun_down = beam * fluxes.sun_down - more;
+    lit.push_back(fluxes);
+  }
+  return lit;
 }
 
 void LitClouds::FindExchange() {
   const std::size_t bands = air_.bands();
-  std::vector<CloudLayerFluxes> grey;
   for (std::size_t i = 0; i < layers(); ++i) {
-    grey.push_back(FluxesOf(Layer(i)));
     beams_.push_back(MeanBeam(MiddleOf(i), i));
-    sky_past_.push_back(static_cast<float>(grey.back().sky_down));
+    sky_on_clouds_.push_back(SkyOnClouds(i));
+    beam_left_.push_back(static_cast<float>(MeanBeamLeft(MiddleOf(i), i)));
+    sky_past_.push_back(static_cast<float>(FluxesOf(Layer(i)).sky_down));
   }
   const std::vector<Spectrum> no_beams(layers(), Spectrum(bands));
   const double top_m = shadow_->highest_cloud_m();
@@ -166,6 +179,7 @@ void LitClouds::FindExchange() {
   const LocalLight below = LocalLightAt(geometry_, {0.0, 0.0, 0.0}, light_);
   const Spectrum sky = air_.multiple_scattering().Irradiance(top_m, above.mu_s_for_air, 1.0, 1.0);
   const std::vector<double> intensity = DiffuseIntensity(air_, top_m, above.mu_s_for_air);
+  const std::vector<double> reflection = ReflectionOfAirAbove(air_.medium(), top_m);
   const double sine = std::max(below.mu_s_effective, 0.0);
   const Spectrum direct = static_cast<float>(sine) * MeanBeam(0.0, layers());
   const Spectrum clear_direct =
@@ -174,23 +188,30 @@ void LitClouds::FindExchange() {
   ground_below_ = sky_above_;
   sky_left_.assign(layers() + 1, Spectrum(bands));
   diffuse_ = sun_added_ = sky_left_;
+  left_on_ground_ = Spectrum(bands);
   for (std::size_t band = 0; band < bands; ++band) {
     const double albedo = air_.medium().ground_albedo[band];
     const auto from_sky = static_cast<double>(sky[band]);
     const auto on_ground = static_cast<double>(direct[band]);
-    const auto lit = LitBy(grey, beams_, band), unlit = LitBy(grey, no_beams, band);
-    const auto all = FluxesBetween(lit, {from_sky, on_ground}, albedo);
-    const auto of_sky = FluxesBetween(unlit, {.sky = 1.0}, albedo);
-    const auto of_sun = FluxesBetween(lit, {.direct_on_ground = on_ground}, albedo);
+    const InterfaceFluxes clear =
+        FluxesBetween({}, {from_sky, static_cast<double>(clear_direct[band])}, albedo).front();
+    const double sky_alone = from_sky - reflection[band] * clear.up;
+    const auto all = FluxesBetween(LitBy(beams_, from_sky, band),
+                                   {sky_alone, on_ground, reflection[band]}, albedo);
+    const auto of_sky = FluxesBetween(LitBy(no_beams, 1.0, band), {.sky = 1.0}, albedo);
     for (std::size_t i = 0; i < layers(); ++i) {
       sky_above_[i][band] = static_cast<float>(all[i + 1].down / kPi);
       ground_below_[i][band] = static_cast<float>(all[i].up / kPi);
       sky_left_[i][band] = static_cast<float>(of_sky[i].down);
-      sun_added_[i][band] = static_cast<float>(of_sun[i].down);
+    }
+    for (std::size_t i = 0; i <= layers(); ++i) {
+      sun_added_[i][band] =
+          static_cast<float>(std::max(all[i].down - of_sky[i].down * from_sky, 0.0));
     }
     sky_left_.back()[band] = 1.0F;
-    const InterfaceFluxes clear =
-        FluxesBetween({}, {from_sky, static_cast<double>(clear_direct[band])}, albedo).front();
+    const double on_clear_ground = clear.down + static_cast<double>(clear_direct[band]);
+    left_on_ground_[band] = static_cast<float>(
+        on_clear_ground > 0.0 ? (all.front().down + on_ground) / on_clear_ground : 1.0);
     for (std::size_t i = 0; i <= layers(); ++i) {
       const double left = of_sky[i].down;
       const double change = (left - 1.0) * (intensity[band] - 2.0 * clear.up) +
@@ -272,16 +293,68 @@ double LitClouds::PastOthers(std::size_t layer, const glm::dvec3& flat_point) co
   return left;
 }
 
+Spectrum LitClouds::SkyOnClouds(std::size_t layer) const {
+  constexpr int kRays = 512;
+  const CloudLight& light = Layer(layer);
+  const CloudLattice& lattice = light.field().lattice();
+  const CloudPlaneRays rays(light.field(), glm::dvec2(lattice.origin_m),
+                            glm::dvec2(lattice.size_m()), light.sun().to_sun(),
+                            light.optics().phase());
+  const double altitude_m = MiddleOf(layer);
+  const double mu_s = LocalLightAt(geometry_, {0.0, 0.0, altitude_m}, light_).mu_s_for_air;
+  const Spectrum from_below = air_.multiple_scattering().Irradiance(altitude_m, mu_s, -1.0, 1.0);
+  const SkyMoments sky = SkyMoments(air_.multiple_scattering(), {0.0, 0.0, 1.0},
+                                    light_.direction.for_air, {altitude_m})
+                             .WithoutGround(static_cast<float>(1.0 / kPi) * from_below);
+  const std::vector<double> all(
+      static_cast<std::size_t>(air_.multiple_scattering().options().degree) + 1, 1.0);
+  Spectrum level(air_.bands()), taken(air_.bands());
+  float taken_weight = 0.0F;
+  for (int i = 1; i <= kRays; ++i) {
+    const CloudRay ray = rays.FromTop(i).ray;
+    const Spectrum radiance = sky.Towards(-ray.direction, all).front();
+    const auto weight = static_cast<float>(1.0 - light.Radiance(ray).scaled_transmittance);
+    level = level + radiance;
+    taken = taken + weight * radiance;
+    taken_weight += weight;
+  }
+  Spectrum relative(air_.bands(), 1.0F);
+  for (std::size_t band = 0; band < relative.size(); ++band) {
+    const float even = taken_weight * level[band];
+    if (even > 0.0F) relative[band] = kRays * taken[band] / even;
+  }
+  return relative;
+}
+
+LitClouds::LightAround LitClouds::AroundLayer(std::size_t layer, const LocalLight& sun) const {
+  const MultipleScattering& orders = air_.multiple_scattering();
+  // Irradiance of a level surface that faces the sky or the ground.
+  const auto level = [&](double altitude_m, double up) {
+    return orders.Irradiance(altitude_m, sun.mu_s_for_air, up, 1.0);
+  };
+  const Spectrum from_above = sky_on_clouds_[layer] * level(sun.altitude_m, 1.0) +
+                              -1.0F * level(shadow_->highest_cloud_m(), 1.0);
+  const Spectrum from_below = level(sun.altitude_m, -1.0) + -1.0F * level(0.0, -1.0);
+  LightAround around{sky_above_[layer], ground_below_[layer]};
+  constexpr auto kToRadiance = static_cast<float>(1.0 / kPi);
+  for (std::size_t band = 0; band < around.sky.size(); ++band) {
+    float &sky = around.sky[band], &ground = around.ground[band];
+    sky = std::max(sky + kToRadiance * beam_left_[layer] * from_above[band], 0.0F);
+    ground = std::max(ground + kToRadiance * left_on_ground_[band] * from_below[band], 0.0F);
+  }
+  return around;
+}
+
 CloudScreen LitClouds::Screen(const CloudRayPart& grey, const glm::dvec3& point) const {
   const LocalLight sun = LocalLightAt(geometry_, point, light_);
   const double past = PastOthers(grey.layer, InFlatFrame(point, geometry_.radius_m()));
   const Spectrum beam = static_cast<float>(past * sun.visible_fraction) *
                         air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
+  const LightAround around = AroundLayer(grey.layer, sun);
   const auto [from_sun, from_sky, from_ground] = grey.light;
   return {grey.distance_m, static_cast<float>(grey.scaled_transmittance),
-          static_cast<float>(from_sun) * beam +
-              static_cast<float>(from_sky) * sky_above_[grey.layer] +
-              static_cast<float>(from_ground) * ground_below_[grey.layer],
+          static_cast<float>(from_sun) * beam + static_cast<float>(from_sky) * around.sky +
+              static_cast<float>(from_ground) * around.ground,
           static_cast<float>(from_ground)};
 }
 

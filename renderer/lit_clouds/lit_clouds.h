@@ -8,6 +8,11 @@
 //
 //   L += T_i A (E_beam sun_i + L_sky sky_i + L_ground ground_i)
 //
+// Skylight is found above all clouds, and light from below on the ground. The air between these and a
+// cloud adds what it adds in a clear sky, times the mean fraction of light that reaches it. Fields of
+// single clouds take more light from the bright sky near the horizon than from the zenith. Their sky
+// has the mean radiance of a clear one along rays through the field, weighted by what it takes away.
+//
 // Clouds stand in the air as screens at the mean distance of their light, which the air in front dims
 // and veils. Light that the air scatters more than once is that of a clear sky times
 //
@@ -168,10 +173,26 @@ class LitClouds {
   [[nodiscard]] std::vector<CloudRayPart> PartsOf(const glm::dvec3& origin,
                                                   const PixelRays::Ray& ray, bool by_paths) const;
   void FindExchange();
+  /// Returns the fluxes of each layer in beams. What a layer takes away from a clear sky in addition to
+  /// that from an even one counts as if it scattered a beam.
+  /// @param sky  irradiance of a clear sky. @param band  of the beams.
+  [[nodiscard]] std::vector<CloudLayerFluxes> LitBy(const std::vector<Spectrum>& beams, double sky,
+                                                    std::size_t band) const;
   /// Returns the mean beam on a plane behind other layers, per unit solar irradiance.
   /// @param of_layer  which does not dim the beam; the number of layers: none.
   [[nodiscard]] Spectrum MeanBeam(double altitude_m, std::size_t of_layer) const;
+  /// Returns the mean fraction of the beam that other layers leave on a plane.
+  [[nodiscard]] double MeanBeamLeft(double altitude_m, std::size_t of_layer) const;
   [[nodiscard]] CloudScreen Screen(const CloudRayPart& grey, const glm::dvec3& point) const;
+  /// Returns the mean radiance of a clear sky along rays through a layer, weighted by what the layer
+  /// takes away, relative to that of an even sky with the same irradiance of a level surface.
+  [[nodiscard]] Spectrum SkyOnClouds(std::size_t layer) const;
+  /// Radiances per unit solar irradiance [1/sr].
+  struct LightAround {
+    Spectrum sky, ground;
+  };
+  /// Returns the mean light from above and from below in a layer. @param sun  at a place in it.
+  [[nodiscard]] LightAround AroundLayer(std::size_t layer, const LocalLight& sun) const;
   /// Returns the transmittance to the light of the layers other than one.
   [[nodiscard]] double PastOthers(std::size_t layer, const glm::dvec3& flat_point) const;
 
@@ -193,8 +214,12 @@ class LitClouds {
   SolvedAir air_;
   DistantLight light_;
   std::shared_ptr<const CloudShadow> shadow_;
-  /// Radiance of sky above and of ground below each layer, per unit solar irradiance [1/sr].
+  /// Radiance of the sky above and of the ground below each layer, per unit solar irradiance [1/sr];
+  /// the air between adds to both (AroundLayer).
   std::vector<Spectrum> sky_above_, ground_below_;
+  std::vector<Spectrum> sky_on_clouds_;  // SkyOnClouds
+  std::vector<float> beam_left_;  // mean fraction of the beam that other layers leave to each
+  Spectrum left_on_ground_;       // light on the ground relative to that without clouds
   /// Light below each interface: per unit skylight from above all layers, and by the sun's beam
   /// alone, per unit solar irradiance.
   std::vector<Spectrum> sky_left_, sun_added_;

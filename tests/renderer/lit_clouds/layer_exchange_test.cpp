@@ -30,6 +30,7 @@ std::vector<InterfaceFluxes> FollowedBetween(std::span<const CloudLayerFluxes> l
       sum[i].up += up[i];
     }
     next_up[0] = ground_albedo * down[0];
+    next_down[top] = outer.reflection * up[top];
     for (std::size_t i = 0; i < top; ++i) {
       next_down[i] += layers[i].sky_down * down[i + 1] + layers[i].sky_up * up[i];
       next_up[i + 1] += layers[i].sky_up * down[i + 1] + layers[i].sky_down * up[i];
@@ -42,7 +43,7 @@ std::vector<InterfaceFluxes> FollowedBetween(std::span<const CloudLayerFluxes> l
 
 // Both sum the same series; 1e-12 is rounding.
 TEST(LayerExchange, EqualsLightFollowedFromLayerToLayer) {
-  const OuterFluxes outer{.sky = 0.2, .direct_on_ground = 0.25};
+  const OuterFluxes outer{.sky = 0.2, .direct_on_ground = 0.25, .reflection = 0.15};
   const auto at = FluxesBetween(kThreeLayers, outer, 0.6);
   const auto followed = FollowedBetween(kThreeLayers, outer, 0.6);
   ASSERT_EQ(at.size(), 4u);

@@ -11,6 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "renderer/clouds/cloud_generator.h"
+#include "renderer/lit_clouds/air_reflection.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/lamp_night.h"
 #include "tests/fixtures/media.h"
@@ -283,14 +284,56 @@ TEST(LitClouds, AirHasTheLightOfItsSideOfTheLayer) {
   EXPECT_EQ(across[1].factor[0], above[0].factor[0]);
 }
 
-TEST(LitClouds, SurfacesAboveTheLayerKeepTheClearSky) {
+// The deck sends up at most the irradiance of the sun and less than a tenth of it by the sky, and the
+// ground at least nothing.
+TEST(LitClouds, SurfacesAboveTheLayerSeeItsLightInTheAir) {
   const CloudStage& stage = DeckStage();
   const SkyThroughMedia clear = SkyThroughMedia::Clear(stage.air.bands());
   const SkyThroughMedia sky = stage.Lit().SkyOnSurface({0.0, 0.0, 2000.0}, 1.0, clear);
+  const std::vector<double> reflection = ReflectionOfAirAbove(stage.air.medium(), 1400.0);
   for (std::size_t band = 0; band < stage.air.bands(); ++band) {
     EXPECT_EQ(sky.left[band], 1.0F);
-    EXPECT_EQ(sky.added[band], 0.0F);
+    EXPECT_GT(static_cast<double>(sky.added[band]), 0.2 * kHighSun.z * reflection[band]);
+    EXPECT_LT(static_cast<double>(sky.added[band]), (kHighSun.z + 0.1) * reflection[band]);
   }
+}
+
+/// Returns the radiance of the sky for clouds, relative to that of an even sky with the same irradiance
+/// of a level surface. The light from below, a tenth of a cloud's, counts as that of clear air.
+Spectrum SkyOnClouds(const CloudStage& stage) {
+  const MultipleScattering& orders = stage.air.multiple_scattering();
+  const CloudLight& light = stage.clouds->light.front();
+  const auto to_radiance = static_cast<float>(1.0 / kPi);
+  const LitClouds lit = stage.Lit();
+  Spectrum from_sky(stage.air.bands()), even = from_sky;
+  for (int i = 1; i <= 400; ++i) {
+    const glm::dvec3 eye(1280.0 * Halton(i, 2), 1280.0 * Halton(i, 3), 2000.0),
+        down(0.0, 0.0, -1.0);
+    const CloudsOnRay clouds = lit.Along(eye, down, eye.z);
+    if (clouds.screens.empty()) continue;
+    const double altitude_m = eye.z - clouds.screens.front().distance_m;
+    const CloudRayLight grey = light.Radiance({eye, down});
+    const auto level = [&](double up) {
+      return to_radiance * orders.Irradiance(altitude_m, kHighSun.z, up, 1.0);
+    };
+    const Spectrum beam = stage.air.BeamLeft(altitude_m, kHighSun.z);
+    from_sky = from_sky + clouds.screens.front().radiance +
+               -1.0F * (static_cast<float>(grey.sun) * beam +
+                        static_cast<float>(grey.ground) * level(-1.0));
+    even = even + static_cast<float>(grey.sky) * level(1.0);
+  }
+  for (std::size_t band = 0; band < even.size(); ++band) from_sky[band] /= even[band];
+  return from_sky;
+}
+
+// The sky near the horizon is up to three times as bright as at the zenith. It lights the sides of
+// single clouds, and a closed deck like any level surface. The sky is brightest in the first band.
+TEST(LitClouds, SingleCloudsSeeTheBrightHorizon) {
+  const CloudStage spheres(tests::SphereClouds(0.05));
+  const Spectrum on_spheres = SkyOnClouds(spheres), on_deck = SkyOnClouds(DeckStage());
+  EXPECT_GT(on_spheres[0], 1.1F);
+  EXPECT_LT(on_spheres[0], 1.6F);
+  EXPECT_NEAR(on_deck[0], 1.0F, 0.1F) << "less light from below than counted";
 }
 
 // A thousand candelas below the second of two screens; air takes a few hundredths of the light, and
