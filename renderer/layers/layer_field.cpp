@@ -72,7 +72,7 @@ LayerField LayerField::UnderSky(const LayerStack& stack,
                                 const std::function<double(const LightWay&)>& sky) {
   LayerField field(stack);
   const StreamSet& streams = stack.streams();
-  // As many azimuths as modes have cosines.
+  // The rule integrates the cosines of all modes: it has four nodes more than there are streams.
   const GaussRule& rule = GaussLegendre(std::min(streams.streams() + 4, kMaxGaussNodes));
   for (int m = 0; m < stack.modes(); ++m) {
     std::vector<double> from_above(streams.size(), 0.0);

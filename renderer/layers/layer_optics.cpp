@@ -44,6 +44,7 @@ LayerOptics MixedLayer(const std::vector<LayerOptics>& constituents) {
   double scattering = 0.0;
   std::vector<double> moments;
   for (const LayerOptics& one : constituents) {
+    RequireLayerOptics(one, "constituent");
     const double of_one = one.albedo * one.optical_depth;
     mixed.optical_depth += one.optical_depth;
     scattering += of_one;

@@ -40,7 +40,7 @@ struct ScaledLayer {
 [[nodiscard]] ScaledLayer DeltaScaled(const LayerOptics& optics, int streams);
 
 /// Returns mixed optics of constituents of one layer: optical depths add, and phase functions are
-/// weighted by optical depths of scattering.
+/// weighted by optical depths of scattering. Throws InputError as above.
 [[nodiscard]] LayerOptics MixedLayer(const std::vector<LayerOptics>& constituents);
 
 }  // namespace alpenglow::renderer

@@ -67,7 +67,7 @@ class LayerStack {
   [[nodiscard]] std::vector<InterfaceLight> Solve(int m, const ModeSources& sources) const;
 
  private:
-  /// What lies below a layer, for one azimuth mode.
+  /// The layers and the ground below one layer, for one azimuth mode.
   struct Below {
     DenseMatrix rho;      // its reflection
     DenseMatrix between;  // (1 - R rho)^-1: light to and fro

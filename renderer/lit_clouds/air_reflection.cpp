@@ -23,10 +23,10 @@ std::vector<double> ReflectionOfAirAbove(const Medium& medium, double altitude_m
     LayerOptics molecules{.optical_depth = molecules_m * medium.rayleigh_scattering_per_m[band],
                           .chi = {1.0, 0.0, 0.1}};
     const double extinction_per_m = medium.mie_extinction_per_m[band];
-    LayerOptics aerosol{.optical_depth = aerosol_m * extinction_per_m, .chi = {}};
+    LayerOptics aerosol{.optical_depth = aerosol_m * extinction_per_m, .chi = {1.0}};
     if (extinction_per_m > 0.0)
       aerosol.albedo = medium.mie_scattering_per_m[band] / extinction_per_m;
-    for (std::size_t l = 0; l <= kStreams; ++l) aerosol.chi.push_back(chi[l * bands + band]);
+    for (std::size_t l = 1; l <= kStreams; ++l) aerosol.chi.push_back(chi[l * bands + band]);
     const LayerStack stack({MixedLayer({molecules, aerosol})}, 0.0, kStreams);
     const double depth = stack.optics(0).optical_depth;
     const double down = LayerField::OverUniformGround(stack).Fluxes(depth).down / kPi;

@@ -87,9 +87,9 @@ void AddErrors(const LayerStack& stack, const doubling::Stack& truth, LayerError
 
 /// Returns the errors for every number of streams.
 std::vector<LayerErrors> ErrorsBy(const std::vector<int>& streams) {
-  std::vector<CloudyAir> airs{
-      {0.3, 1.0, 0.75, 0.1}, {5.0, 0.99, 0.75, 0.8}, {20.0, 0.95, 0.75, 0.1}};
-  if (tests::kSanitized) airs = {{0.3, 1.0, 0.6, 0.1}};
+  const auto airs = tests::ScaledDown<std::vector<CloudyAir>>(
+      {{0.3, 1.0, 0.75, 0.1}, {5.0, 0.99, 0.75, 0.8}, {20.0, 0.95, 0.75, 0.1}},
+      {{0.3, 1.0, 0.6, 0.1}});
   std::vector<LayerErrors> errors(streams.size());
   for (const CloudyAir& air : airs) {
     const doubling::Stack truth =
