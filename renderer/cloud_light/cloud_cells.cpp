@@ -32,13 +32,8 @@ void EachAround(const std::array<int, 3>& place, int reach, const Visit& visit) 
   }
 }
 
-/// A cell as samples of a field describe it.
-struct CellSamples {
-  double extinction_per_m = 0.0;  // mean of those with cloud
-  double share = 0.0;             // of samples with cloud
-};
-
-CellSamples Sampled(const CloudField& field, const glm::dvec3& low, const glm::dvec3& cell_m) {
+/// Returns the content of a cell by samples of a field.
+CloudCellContent Sampled(const CloudField& field, const glm::dvec3& low, const glm::dvec3& cell_m) {
   if (field.EmptyDistance_m(low + 0.5 * cell_m) > 0.5 * glm::length(cell_m)) return {};
   std::array<int, 3> samples{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -86,6 +81,18 @@ CloudCells::CloudCells(const CloudField& field, double cell_m)
     throw InputError(fmt::format("cells of {} m are too small for a field of {} x {} m", cell_m,
                                  size_m.x, size_m.y));
   }
+  Fill([&](const CloudBox& cell) { return Sampled(field, cell.low, cell.high - cell.low); });
+}
+
+CloudCells::CloudCells(const CloudCellLattice& lattice, const Content& content)
+    : count_(lattice.count),
+      origin_m_(lattice.origin_m),
+      cell_m_(lattice.cell_m),
+      is_periodic_(false) {
+  Fill(content);
+}
+
+void CloudCells::Fill(const Content& content) {
   const auto places = PlaceOf(0, 0, count_[2]);
   stored_.assign(places, -1);
   std::vector<char> has_cloud(places, 0);
@@ -93,7 +100,7 @@ CloudCells::CloudCells(const CloudField& field, double cell_m)
   tbb::parallel_for(0, count_[1] * count_[2], [&](int row) {
     for (int x = 0; x < count_[0]; ++x) {
       const glm::dvec3 low = origin_m_ + glm::dvec3(x, row % count_[1], row / count_[1]) * cell_m_;
-      const CellSamples samples = Sampled(field, low, cell_m_);
+      const CloudCellContent samples = content({low, low + cell_m_});
       const std::size_t place = PlaceOf(x, row % count_[1], row / count_[1]);
       has_cloud[place] = samples.share > 0.0 ? 1 : 0;
       if (samples.share > 0.5) {

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -19,14 +20,32 @@
 
 namespace alpenglow::renderer {
 
+/// A box of equal cells.
+struct CloudCellLattice {
+  std::array<int, 3> count{1, 1, 1};  // along x, y, z; each >= 1
+  glm::dvec3 origin_m{0.0};           // corner with the least coordinates
+  glm::dvec3 cell_m{1.0};             // sides of a cell, > 0
+};
+
+/// The content of a cell.
+struct CloudCellContent {
+  double extinction_per_m = 0.0;  // mean of the part that holds cloud
+  double share = 0.0;             // of the cell that holds cloud
+};
+
 /// Immutable; safe to use from many threads. It does not refer to the field.
 class CloudCells {
  public:
+  /// Returns the content of a cell, which is a box. Safe to call from many threads.
+  using Content = std::function<CloudCellContent(const CloudBox&)>;
+
   /// Samples the field with as many threads as are free; the result does not depend on their number.
   /// @param cell_m  side of a cell, in [10, 10000]; cells of shallow fields are flatter, so that
   /// there are at least kLeastLevels of them. A period is a multiple of the cells. Throws InputError
   /// for sides out of range and for more than 10^9 cells.
   CloudCells(const CloudField& field, double cell_m);
+  /// Makes the cells of any medium in an open box.
+  CloudCells(const CloudCellLattice& lattice, const Content& content);
 
   static constexpr int kLeastLevels = 6;
 
@@ -87,6 +106,7 @@ class CloudCells {
   }
   /// Returns a place after wrapping x and y, or a negative number outside of the cells.
   [[nodiscard]] std::ptrdiff_t WrappedPlace(int x, int y, int z) const;
+  void Fill(const Content& content);
   void StoreCells(const std::vector<char>& has_cloud);
   void FindRuns();
   void FindNeighbours();

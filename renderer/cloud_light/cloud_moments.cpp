@@ -219,20 +219,23 @@ struct TrackRoom {
 struct CloudMomentSolver::Source {
   std::vector<float> beam;          // mean irradiance of the scaled beam in full cells; or nothing
   CloudHarmonics beam_harmonics{};  // of the beam's direction of travel
-  float from_above = 0.0F, from_below = 0.0F;  // radiance that enters
+  std::vector<CloudHarmonics> incident;  // moments of beams in full cells; or nothing
+  std::vector<float> entering;           // radiance of each direction; or nothing
 };
 
 /// The cells of one size and the tracks through them.
 class CloudMomentSolver::Grid {
  public:
-  Grid(const CloudField& field, std::shared_ptr<const CloudOptics> optics, double cell_m)
-      : cells_(std::make_shared<const CloudCells>(field, cell_m)),
+  /// @param extinction_per_m  by which the extinction of cells is multiplied.
+  Grid(std::shared_ptr<const CloudCells> cells, double extinction_per_m,
+       std::shared_ptr<const CloudOptics> optics)
+      : cells_(std::move(cells)),
         optics_(std::move(optics)),
         directions_(CloudDirections()),
         extinction_per_m_(std::max<std::size_t>(cells_->lanes(), kCloudLanes)) {
     for (std::size_t cell = 0; cell < cells_->full(); ++cell) {
-      extinction_per_m_.data()[cells_->Lane(cell)] =
-          static_cast<float>(optics_->extinction_scale() * cells_->Extinction_per_m(cell));
+      extinction_per_m_.data()[cells_->Lane(cell)] = static_cast<float>(
+          optics_->extinction_scale() * extinction_per_m * cells_->Extinction_per_m(cell));
     }
     for (std::size_t i = 0; i < directions_.size(); ++i) {
       const glm::dvec3& travel = directions_[i].travel;
@@ -290,6 +293,7 @@ class CloudMomentSolver::Grid {
 void CloudMomentSolver::Grid::FillSources(const CloudHarmonics* moments, const Source* source,
                                           DirectionValues& values) const {
   const bool has_beam = source != nullptr && !source->beam.empty();
+  const bool has_incident = source != nullptr && !source->incident.empty();
   const std::size_t blocks = (cells_->full() + kCellsAtOnce - 1) / kCellsAtOnce;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     const std::size_t first = block * kCellsAtOnce;
@@ -299,6 +303,7 @@ void CloudMomentSolver::Grid::FillSources(const CloudHarmonics* moments, const S
       for (std::size_t k = 0; k < kCloudMoments; ++k) {
         float value = moments != nullptr ? moments[first + i][k] : 0.0F;
         if (has_beam) value += source->beam_harmonics[k] * source->beam[first + i];
+        if (has_incident) value += source->incident[first + i][k];
         moment[k][i] = value;
       }
     }
@@ -392,10 +397,8 @@ CloudMomentSolver::Grid::Swept CloudMomentSolver::Grid::Sweep(const CloudHarmoni
   }
   tbb::enumerable_thread_specific<TrackRoom> rooms;
   tbb::parallel_for(std::size_t{0}, kDirections, [&](std::size_t d) {
-    float entering = 0.0F;
-    if (source != nullptr) {
-      entering = directions_[d].travel.z < 0.0 ? source->from_above : source->from_below;
-    }
+    const float entering =
+        source != nullptr && !source->entering.empty() ? source->entering[d] : 0.0F;
     float* each = d < through_base.size() ? through_base[d].radiance.data() : nullptr;
     leaving[d] = Follow(d, entering, everywhere, values[d], rooms.local(), each);
   });
@@ -449,15 +452,25 @@ float CloudMoments::Source(const CloudCells::Mixture& mixture,
   return source;
 }
 
-CloudMomentSolver::CloudMomentSolver(const CloudField& field,
+CloudMomentSolver::CloudMomentSolver(const std::vector<std::shared_ptr<const CloudCells>>& cells,
+                                     double extinction_per_m,
                                      std::shared_ptr<const CloudOptics> optics,
                                      const CloudMomentOptions& options)
     : optics_(std::move(optics)), options_(options) {
-  RequireInRange(options.cell_m, 10.0, 2500.0, "the side of cells of light in clouds [m]");
   RequireInRange(options.tolerance, 1e-6, 0.5, "the tolerance of light in clouds");
   if (options.most_sweeps < 1) throw InputError("light in clouds needs one sweep or more");
+  for (const auto& each : cells)
+    grids_.push_back(std::make_unique<const Grid>(each, extinction_per_m, optics_));
+}
+
+CloudMomentSolver::CloudMomentSolver(const CloudField& field,
+                                     std::shared_ptr<const CloudOptics> optics,
+                                     const CloudMomentOptions& options)
+    : CloudMomentSolver({}, 1.0, std::move(optics), options) {
+  RequireInRange(options.cell_m, 10.0, 2500.0, "the side of cells of light in clouds [m]");
   for (const double times : {4.0, 2.0, 1.0}) {
-    grids_.push_back(std::make_unique<const Grid>(field, optics_, times * options.cell_m));
+    grids_.push_back(std::make_unique<const Grid>(
+        std::make_shared<const CloudCells>(field, times * options.cell_m), 1.0, optics_));
   }
 }
 
@@ -506,15 +519,32 @@ SolvedCloudMoments CloudMomentSolver::Sun(const CloudSunDepths& to_sun) const {
 }
 
 SolvedCloudMoments CloudMomentSolver::Sky() const {
-  Source source;
-  source.from_above = 1.0F;
-  return Cascade(std::vector<Source>(grids_.size(), source));
+  return Light({.entering = [](const glm::dvec3& travel) { return travel.z < 0.0 ? 1.0 : 0.0; },
+                .incident = nullptr});
 }
 
 SolvedCloudMoments CloudMomentSolver::Ground() const {
-  Source source;
-  source.from_below = 1.0F;
-  return Cascade(std::vector<Source>(grids_.size(), source));
+  return Light({.entering = [](const glm::dvec3& travel) { return travel.z > 0.0 ? 1.0 : 0.0; },
+                .incident = nullptr});
+}
+
+SolvedCloudMoments CloudMomentSolver::Light(const CloudIllumination& light) const {
+  std::vector<Source> sources(grids_.size());
+  for (std::size_t i = 0; i < grids_.size(); ++i) {
+    if (light.entering) {
+      for (const CloudDirection& direction : CloudDirections())
+        sources[i].entering.push_back(static_cast<float>(light.entering(direction.travel)));
+    }
+    if (!light.incident) continue;
+    const CloudCells& of = *grids_[i]->cells();
+    const glm::dvec3 half_m = 0.5 * of.cell_m();
+    sources[i].incident.resize(of.full());
+    tbb::parallel_for(std::size_t{0}, of.full(), [&](std::size_t cell) {
+      const glm::dvec3 middle = of.Middle(cell);
+      sources[i].incident[cell] = light.incident({middle - half_m, middle + half_m});
+    });
+  }
+  return Cascade(sources);
 }
 
 }  // namespace alpenglow::renderer

@@ -25,6 +25,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
 
@@ -80,11 +82,26 @@ struct SolvedCloudMoments {
   double residual = 0.0;  // relative to the source
 };
 
+/// Light that enters a medium from outside and light of beams in it.
+struct CloudIllumination {
+  /// Returns the radiance that enters along a direction of travel; null: none.
+  std::function<double(const glm::dvec3& travel)> entering;
+  /// Returns the sum of E' Y_lm(d) over all scaled beams of irradiance E' that travel along d, the mean over a
+  /// cell weighted by extinction; null: none. Isotropic emission of the radiance J per unit of
+  /// scaled extinction is J / (w' Y_00) in the first moment. Safe to call from many threads.
+  std::function<CloudHarmonics(const CloudBox& cell)> incident;
+};
+
 /// Solves for the light of one field. Immutable. It does not refer to the field.
 class CloudMomentSolver {
  public:
   /// Throws InputError for options out of range.
   CloudMomentSolver(const CloudField& field, std::shared_ptr<const CloudOptics> optics,
+                    const CloudMomentOptions& options = {});
+  /// Solves on given cells of one medium, from the coarsest to the finest. Throws likewise.
+  /// @param extinction_per_m  by which the extinction of cells is multiplied.
+  CloudMomentSolver(const std::vector<std::shared_ptr<const CloudCells>>& cells,
+                    double extinction_per_m, std::shared_ptr<const CloudOptics> optics,
                     const CloudMomentOptions& options = {});
   ~CloudMomentSolver();
   CloudMomentSolver(CloudMomentSolver&&) noexcept;
@@ -97,6 +114,8 @@ class CloudMomentSolver {
   [[nodiscard]] SolvedCloudMoments Sky() const;
   /// Unit radiance from all directions below.
   [[nodiscard]] SolvedCloudMoments Ground() const;
+  /// Light that is given in the frame of the cells.
+  [[nodiscard]] SolvedCloudMoments Light(const CloudIllumination& light) const;
 
   [[nodiscard]] const CloudCells& cells() const;
   /// Returns the memory of all grids [bytes].

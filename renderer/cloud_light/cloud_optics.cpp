@@ -87,9 +87,22 @@ PhaseFunction MeanCloudPhase(const CloudField& field, const CloudPhases& phases)
 }
 
 CloudOptics::CloudOptics(const CloudField& field, const CloudScatterers& scatterers)
-    : phase_(MeanCloudPhase(field, scatterers.phases)),
-      peak_(phase_, kCloudDegree),
-      albedo_(scatterers.albedo.value_or(field.single_scattering_albedo())) {
+    : CloudOptics(MeanCloudPhase(field, scatterers.phases),
+                  scatterers.albedo.value_or(field.single_scattering_albedo())) {}
+
+CloudOptics::CloudOptics(PhaseFunction phase, double albedo)
+    : phase_(std::move(phase)), peak_(phase_, kCloudDegree), albedo_(albedo) {
+  FindFactors();
+}
+
+CloudOptics CloudOptics::WithAlbedo(double albedo) const {
+  CloudOptics other = *this;
+  other.albedo_ = albedo;
+  other.FindFactors();
+  return other;
+}
+
+void CloudOptics::FindFactors() {
   RequireInRange(albedo_, 0.0, 1.0, "the albedo of single scattering in clouds");
   const std::vector<double> chi = LegendreCoefficients(phase_, kCloudDegree);
   const double f = peak_.fraction();

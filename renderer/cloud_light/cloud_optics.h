@@ -39,8 +39,12 @@ using CloudHarmonics = std::array<float, kCloudMoments>;
 /// Immutable; safe to use from many threads.
 class CloudOptics {
  public:
-  /// Throws InputError of ForwardPeak and for an albedo outside [0, 1].
+  /// Throw InputError of ForwardPeak and for an albedo outside [0, 1].
   CloudOptics(const CloudField& field, const CloudScatterers& scatterers);
+  CloudOptics(PhaseFunction phase, double albedo);
+
+  /// Returns the optics with another albedo. Throws InputError outside [0, 1].
+  [[nodiscard]] CloudOptics WithAlbedo(double albedo) const;
 
   [[nodiscard]] const PhaseFunction& phase() const { return phase_; }
   [[nodiscard]] const ForwardPeak& peak() const { return peak_; }
@@ -56,6 +60,8 @@ class CloudOptics {
   [[nodiscard]] CloudHarmonics SourceFactors(const glm::dvec3& direction) const;
 
  private:
+  void FindFactors();
+
   PhaseFunction phase_;
   ForwardPeak peak_;
   double albedo_;
