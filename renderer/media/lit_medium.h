@@ -5,6 +5,7 @@
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
@@ -39,6 +40,7 @@ struct LightOnPoint {
   const Spectrum& in_air;           // transmittance of the air for sunlight
   float past_terrain;               // fraction of the sunlight that terrain does not stop
   const SpectrumOf<double>& depth;  // optical depth of the other media towards the sun
+  double column_to_eye_m;           // of the medium itself, from the ray's origin
   float sky_left;                   // transmittance of the other layers for skylight
 
   /// Returns the transmittance of terrain and of an optical depth for sunlight, without the air.
@@ -54,7 +56,7 @@ class MediumOnRay {
   virtual ~MediumOnRay() = default;
 
   /// Adds the light that the medium sends to the ray's origin [W m^-2 sr^-1 nm^-1 per metre],
-  /// without attenuation in between.
+  /// without attenuation in between, which is that of LitMedium::WideExtinction_per_m.
   /// @param density  at the point, > 0.
   virtual void AddSource(const LightOnPoint& light, double density, Spectrum& sum) const = 0;
 };
@@ -78,6 +80,11 @@ class LitMedium {
 
   [[nodiscard]] virtual std::unique_ptr<const MediumOnRay> OnRay(
       const glm::dvec3& direction) const = 0;
+  /// Returns the extinction at density 1 for light of wide sources and of the medium itself [1/m];
+  /// nothing: that of its optics.
+  [[nodiscard]] virtual std::optional<SpectrumOf<double>> WideExtinction_per_m() const {
+    return std::nullopt;
+  }
   /// Adds distances along a ray at which panels of the march must end.
   virtual void AddCuts(const glm::dvec3& /*origin*/, const glm::dvec3& /*direction*/,
                        std::vector<double>& /*cuts_m*/) const {}

@@ -103,8 +103,8 @@ class Sources {
         sunlit_(sunlit),
         on_ray_(lit.size()) {}
 
-  Spectrum operator()(double distance_m, const glm::dvec3& point,
-                      std::span<const double> densities) {
+  Spectrum operator()(double distance_m, const glm::dvec3& point, std::span<const double> densities,
+                      std::span<const double> columns_m) {
     const AirOnRay::Light air = air_.At(distance_m);
     const double altitude_m = sources_.geometry.AltitudeOf(point);
     const float past_terrain =
@@ -113,9 +113,9 @@ class Sources {
     for (std::size_t m = 0; m < lit_.size(); ++m) {
       if (densities[m] <= 0.0) continue;
       const SpectrumOf<double> depth = DepthOfOthers(m, point);
-      MediumAt(m).AddSource(
-          {point, altitude_m, air.sun, past_terrain, depth, SkyPastOthers(m, altitude_m)},
-          densities[m], sum);
+      MediumAt(m).AddSource({point, altitude_m, air.sun, past_terrain, depth, columns_m[m],
+                             SkyPastOthers(m, altitude_m)},
+                            densities[m], sum);
     }
     return air.left * sum;
   }
@@ -157,12 +157,17 @@ struct MediaLight::State {
   State(LocalMedia of, const SceneGeometry& geometry, const SolvedAir& air, const Lighting& light,
         const LampLight* lamps, MediaEmission emission)
       : media(std::move(of)), sources{media, geometry, air, light.source, lamps, emission} {
-    for (const auto& medium : media.all()) lit.push_back(medium->LitBy(sources));
+    for (const auto& medium : media.all()) {
+      lit.push_back(medium->LitBy(sources));
+      extinction_per_m.push_back(
+          lit.back()->WideExtinction_per_m().value_or(medium->optics().extinction_per_m));
+    }
   }
 
   LocalMedia media;
   MediaSources sources;
-  LitMedia lit;  // [medium]
+  LitMedia lit;                                      // [medium]
+  std::vector<SpectrumOf<double>> extinction_per_m;  // [medium], for light of wide sources
 };
 
 MediaLight::MediaLight(LocalMedia media, const SceneGeometry& geometry, const SolvedAir& air,
@@ -177,7 +182,8 @@ MarchedLight MediaLight::Along(const glm::dvec3& origin, const glm::dvec3& direc
   Sources sources(state_->sources, state_->lit, origin, direction, sunlit);
   std::vector<double> cuts;
   for (const auto& medium : state_->lit) medium->AddCuts(origin, direction, cuts);
-  return MarchMedia(state_->media, origin, direction, length_m, std::ref(sources), tolerance, cuts);
+  return MarchMedia(state_->media, origin, direction, length_m, std::ref(sources), tolerance, cuts,
+                    state_->extinction_per_m);
 }
 
 Spectrum MediaLight::BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk) const {

@@ -66,7 +66,8 @@ struct MarchPanel {
   double begin_m = 0.0, end_m = 0.0;
   SpectrumOf<double> light, mean, mean_past_bodies;
   MediaDepth depth;
-  double light_error = 0.0;  // of the worst band, absolute
+  std::vector<double> columns_m;  // of each medium
+  double light_error = 0.0;       // of the worst band, absolute
   double depth_error = 0.0;
   double most_light = 0.0, most_depth = 0.0;
 };
@@ -75,7 +76,7 @@ class March {
  public:
   March(const LocalMedia& media, const glm::dvec3& origin, const glm::dvec3& direction,
         double length_m, const MediaSource& source, double tolerance,
-        std::span<const double> cuts_m)
+        std::span<const double> cuts_m, std::span<const SpectrumOf<double>> extinction_per_m)
       : media_(media),
         origin_(origin),
         direction_(direction),
@@ -85,11 +86,14 @@ class March {
         passed_(bands_),
         passed_bodies_(bands_),
         light_(bands_) {
-    for (const auto& medium : media.all()) {
+    for (std::size_t m = 0; m < media.all().size(); ++m) {
+      const auto& medium = media.all()[m];
+      extinction_per_m_.push_back(extinction_per_m.empty() ? medium->optics().extinction_per_m
+                                                           : extinction_per_m[m]);
       pieces_.push_back(medium->PiecesAlong(origin, direction, length_m));
       double thickest = 0.0;
       for (std::size_t band = 0; band < bands_; ++band) {
-        thickest = std::max(thickest, medium->optics().extinction_per_m[band]);
+        thickest = std::max(thickest, extinction_per_m_[m][band]);
       }
       thickest_per_m_.push_back(thickest);
       is_body_.push_back(!medium->IsLayer());
@@ -99,6 +103,7 @@ class March {
       }
     }
     largest_.assign(pieces_.size(), 0.0);
+    passed_columns_m_.assign(pieces_.size(), 0.0);
     if (cuts_.empty()) return;
     const auto [first, last] = std::minmax_element(cuts_.begin(), cuts_.end());
     const double begin_m = *first, end_m = *last;
@@ -196,10 +201,13 @@ class March {
     panel.end_m = end_m;
     panel.light = panel.mean = panel.mean_past_bodies = SpectrumOf<double>(bands_);
     SpectrumOf<double> gauss_light(bands_);
+    std::vector<double> columns_m(count);
     for (std::size_t i = 0; i < kNodes; ++i) {
       const MediaDepth depth = DepthUpto(rule.upto[i], length, count);
+      for (std::size_t m = 0; m < count; ++m)
+        columns_m[m] = passed_columns_m_[m] + ColumnUpto(rule.upto[i], length, m);
       const Spectrum source = source_(begin_m + length * rule.node[i], point[i],
-                                      std::span(densities_).subspan(i * count, count));
+                                      std::span(densities_).subspan(i * count, count), columns_m);
       ++nodes_;
       for (std::size_t band = 0; band < bands_; ++band) {
         const double left = std::exp(-depth.all[band] - passed_[band]);
@@ -212,6 +220,8 @@ class March {
       }
     }
     panel.depth = DepthUpto(rule.weight, length, count);
+    for (std::size_t m = 0; m < count; ++m)
+      panel.columns_m.push_back(ColumnUpto(rule.weight, length, m));
     const MediaDepth gauss_depth = DepthUpto(rule.gauss_weight, length, count);
     for (std::size_t band = 0; band < bands_; ++band) {
       panel.light_error =
@@ -224,17 +234,25 @@ class March {
     return panel;
   }
 
-  // Returns the optical depths with the weights of an integral over densities_.
+  // Returns the column of a medium with the weights of an integral over densities_ [m].
+  [[nodiscard]] double ColumnUpto(const std::array<double, kNodes>& weights, double length,
+                                  std::size_t m) const {
+    if (largest_[m] == 0.0) return 0.0;
+    double column = 0.0;
+    for (std::size_t j = 0; j < kNodes; ++j)
+      column += weights[j] * densities_[j * largest_.size() + m];
+    return length * column;
+  }
+
+  // Returns the optical depths with these weights.
   [[nodiscard]] MediaDepth DepthUpto(const std::array<double, kNodes>& weights, double length,
                                      std::size_t count) const {
     MediaDepth depth{SpectrumOf<double>(bands_), SpectrumOf<double>(bands_)};
     for (std::size_t m = 0; m < count; ++m) {
-      if (largest_[m] == 0.0) continue;
-      double column = 0.0;
-      for (std::size_t j = 0; j < kNodes; ++j) column += weights[j] * densities_[j * count + m];
-      const SpectrumOf<double>& extinction_per_m = media_.all()[m]->optics().extinction_per_m;
+      const double column_m = ColumnUpto(weights, length, m);
+      if (column_m == 0.0) continue;
       for (std::size_t band = 0; band < bands_; ++band) {
-        const double of_this = length * column * extinction_per_m[band];
+        const double of_this = column_m * extinction_per_m_[m][band];
         depth.all[band] += of_this;
         if (is_body_[m]) depth.bodies[band] += of_this;
       }
@@ -243,6 +261,8 @@ class March {
   }
 
   void Add(const MarchPanel& panel) {
+    for (std::size_t m = 0; m < passed_columns_m_.size(); ++m)
+      passed_columns_m_[m] += panel.columns_m[m];
     MarchedPiece piece{panel.begin_m,    panel.end_m,      Spectrum(bands_),
                        Spectrum(bands_), Spectrum(bands_), Spectrum(bands_)};
     for (std::size_t band = 0; band < bands_; ++band) {
@@ -261,10 +281,14 @@ class March {
 
   [[nodiscard]] MarchedLight Result() {
     MarchedLight result;
-    result.radiance = result.transmittance = Spectrum(bands_);
+    result.radiance = result.transmittance = result.narrow_transmittance = Spectrum(bands_);
     for (std::size_t band = 0; band < bands_; ++band) {
       result.radiance[band] = static_cast<float>(light_[band]);
       result.transmittance[band] = static_cast<float>(std::exp(-passed_[band]));
+      double narrow_depth = 0.0;
+      for (std::size_t m = 0; m < passed_columns_m_.size(); ++m)
+        narrow_depth += passed_columns_m_[m] * media_.all()[m]->optics().extinction_per_m[band];
+      result.narrow_transmittance[band] = static_cast<float>(std::exp(-narrow_depth));
     }
     result.error = most_light_ > 0.0 ? error_ / most_light_ : 0.0;
     result.nodes = nodes_;
@@ -277,12 +301,14 @@ class March {
   const MediaSource& source_;
   double tolerance_;
   std::size_t bands_;
-  std::vector<std::vector<DensePiece>> pieces_;  // of each medium
+  std::vector<std::vector<DensePiece>> pieces_;       // of each medium
+  std::vector<SpectrumOf<double>> extinction_per_m_;  // of each medium, for wide sources
   std::vector<double> thickest_per_m_;
   std::vector<bool> is_body_;
   std::vector<double> cuts_;
   std::vector<double> largest_;    // densities of the current piece; 0: not present
   std::vector<double> densities_;  // [node][medium]
+  std::vector<double> passed_columns_m_;
   SpectrumOf<double> passed_, passed_bodies_, light_;
   double whole_m_ = 0.0, most_light_ = 0.0, error_ = 0.0;
   std::size_t nodes_ = 0;
@@ -327,8 +353,10 @@ void Extend(const MarchedPiece& piece, Behind behind, std::vector<Stretch>& stre
 
 MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
                         const glm::dvec3& direction, double length_m, const MediaSource& source,
-                        double tolerance, std::span<const double> cuts_m) {
-  return March(media, origin, direction, length_m, source, tolerance, cuts_m).Run();
+                        double tolerance, std::span<const double> cuts_m,
+                        std::span<const SpectrumOf<double>> extinction_per_m) {
+  return March(media, origin, direction, length_m, source, tolerance, cuts_m, extinction_per_m)
+      .Run();
 }
 
 Spectrum DimmedByMedia(const std::vector<MarchedPiece>& pieces,

@@ -10,6 +10,10 @@
 // whose error exceeds its share is halved. No panel is initially deeper than 2 in optical depth or
 // longer than a block of a grid, so that none steps over unseen structure. Stretches without density
 // are skipped.
+//
+// A medium whose light was found without the forward peak of its phase function attenuates its own
+// light and that of wide sources behind it by less than its extinction. Light of narrow sources
+// behind it (disks, stars) suffers all of it.
 #pragma once
 
 #include <cstddef>
@@ -33,17 +37,21 @@ struct MarchedPiece {
 };
 
 struct MarchedLight {
-  Spectrum radiance;       // W m^-2 sr^-1 nm^-1
-  Spectrum transmittance;  // of all media; values below 1e-6 in every band are not resolved
-  double error = 0.0;      // estimate, relative to the radiance of the brightest band
-  std::size_t nodes = 0;   // number of evaluations of the sources
+  Spectrum radiance;  // W m^-2 sr^-1 nm^-1
+  // Transmittance of all media for light of wide and of narrow sources behind; values of the first
+  // below 1e-6 in every band are not resolved:
+  Spectrum transmittance, narrow_transmittance;
+  double error = 0.0;     // estimate, relative to the radiance of the brightest band
+  std::size_t nodes = 0;  // number of evaluations of the sources
   std::vector<MarchedPiece> pieces;
 };
 
 /// Returns the light that media of these densities send towards the origin at a point [W m^-2
 /// sr^-1 nm^-1 per metre], without attenuation by media in between.
-using MediaSource = std::function<Spectrum(double distance_m, const glm::dvec3& point,
-                                           std::span<const double> densities)>;
+/// @param columns_m  the integrals of the densities from the origin to the point.
+using MediaSource =
+    std::function<Spectrum(double distance_m, const glm::dvec3& point,
+                           std::span<const double> densities, std::span<const double> columns_m)>;
 
 inline constexpr double kMarchTolerance = 2e-3;
 
@@ -54,10 +62,13 @@ inline constexpr double kMarchTolerance = 2e-3;
 ///     sums a thousand times finer, over homogeneous, exponential and turbulent gridded bodies,
 ///     with sources that are smooth or follow a shadow: tests/renderer/media/media_march_test.cpp.
 /// @param cuts_m  distances where panels must end: where the ray is nearest to a lamp.
+/// @param extinction_per_m  of each medium at density 1, for light of wide sources; empty: that of
+///     the optics of all.
 [[nodiscard]] MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
                                       const glm::dvec3& direction, double length_m,
                                       const MediaSource& source, double tolerance = kMarchTolerance,
-                                      std::span<const double> cuts_m = {});
+                                      std::span<const double> cuts_m = {},
+                                      std::span<const SpectrumOf<double>> extinction_per_m = {});
 
 /// Media that attenuate light from behind them.
 enum class Behind { kAll, kBodies };

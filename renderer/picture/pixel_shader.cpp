@@ -44,8 +44,8 @@ std::optional<Spectrum> PixelShader::LeftOfSpace(double x, double y) const {
   SharedSegmentAir air = SharedSegmentAir::Of(hit, ray.through, *frame_);
   AddAir(*frame_, air);
   const Spectrum left =
-      air.clouds.DiskLeft() *
-      (UnmarchedLayers(*frame_, ray.through, air.length_m()) * air.air.transmittance);
+      air.clouds.DiskLeft() * (UnmarchedLayers(*frame_, ray.through, air.length_m()) *
+                               (air.narrow_left * air.air.transmittance));
   return frame_->camera().HasPolariser() ? 0.5F * left : left;
 }
 
@@ -69,7 +69,7 @@ Spectrum PixelShader::DiskFrom(const glm::dvec3& direction, DiskBehind disk) con
   AddAir(*frame_, air);
   const Spectrum left = UnmarchedLayers(*frame_, direction, air.length_m()) * bare;
   const float polarised = frame_->camera().HasPolariser() ? 0.5F : 1.0F;
-  return polarised * air.clouds.DiskLeft() * (air.air.transmittance * left);
+  return polarised * air.clouds.DiskLeft() * (air.narrow_left * (air.air.transmittance * left));
 }
 
 PolarisedLight PixelShader::PolarisedGround(const Hit& hit, const CameraRay& ray,
@@ -128,7 +128,8 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
                         ? *traced
                         : shaded.inscatter + shaded.lamps + shaded.volumes + shaded.clouds;
   if (hit.kind == HitKind::kSky) {
-    const Spectrum disk_left = through.clouds.DiskLeft() * through.layers_left;
+    const Spectrum disk_left =
+        through.clouds.DiskLeft() * (through.narrow_left * through.layers_left);
     if (!frame.sky_lights().small_sun)
       shaded.radiance =
           shaded.radiance + disk_left * SunDiskRadiance(frame, ray.direction, through.air);

@@ -199,6 +199,16 @@ Spectrum LeftByMedia(const std::vector<MarchedPiece>& pieces, double distance_m,
   return left;
 }
 
+/// Returns the fraction of the light of narrow sources behind media to that of wide ones.
+Spectrum NarrowLeft(const MarchedLight& marched) {
+  Spectrum left = marched.narrow_transmittance;
+  for (std::size_t band = 0; band < left.size(); ++band) {
+    const float wide = marched.transmittance[band];
+    left[band] = wide > 0.0F ? left[band] / wide : 1.0F;
+  }
+  return left;
+}
+
 /// Returns the air up to a distance, behind media.
 AirAlongRay AirUpto(double distance_m, const std::vector<MarchedPiece>& pieces, const AirTo& air) {
   const AirAlongRay reached = air(distance_m);
@@ -248,6 +258,7 @@ void AddSource(const FrameContext& frame, const FrameLight& source, bool is_firs
     marched = source.media->Along(eye, through.direction, through.length_m, air.sunlit());
     lit = ThroughMedia(marched.pieces, air, lit);
     lit.transmittance = lit.transmittance * marched.transmittance;
+    if (is_first) rays.narrow_left = NarrowLeft(marched);
   }
   CloudsOnRay clouds;
   if (source.clouds) {
@@ -315,6 +326,8 @@ SharedSegmentAir SharedSegmentAir::Of(const Hit& hit, const glm::dvec3& directio
                        glm::dvec3(0.0),
                        0.0,
                        0};
+  air.narrow_left = Spectrum(frame.scene().medium().wavelengths_nm.size());
+  std::ranges::fill(air.narrow_left.values(), 1.0F);
   air.Add(hit, direction);
   return air;
 }

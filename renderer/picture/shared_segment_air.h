@@ -35,6 +35,9 @@ struct SharedSegmentAir {
   Spectrum lamp_light{};  // airlight of lamps, W m^-2 sr^-1 nm^-1
   Spectrum night{};       // light of the night sky and towns in air and clouds, in the same unit
   Spectrum media{};       // light of sun and sky scattered by media, W m^-2 sr^-1 nm^-1
+  /// Fraction of the light of disks and stars that arrives in addition to the transmittance of `air`,
+  /// which is that of media for wide sources.
+  Spectrum narrow_left{};
   std::vector<MarchedPiece> pieces{};  // pieces of media along the ray
   Spectrum cloud_light{};              // light of clouds, W m^-2 sr^-1 nm^-1
   CloudsOnRay clouds{};                // `air` includes their transmittance

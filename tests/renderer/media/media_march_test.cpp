@@ -40,7 +40,8 @@ std::shared_ptr<const ExponentialLayer> Layer(double base, double scale_height, 
 
 /// Returns the source for which L = B (1 - T): extinction times B.
 MediaSource Glowing(const LocalMedia& media, double radiance) {
-  return [&media, radiance](double, const glm::dvec3&, std::span<const double> densities) {
+  return [&media, radiance](double, const glm::dvec3&, std::span<const double> densities,
+                            std::span<const double>) {
     Spectrum light(1);
     for (std::size_t m = 0; m < densities.size(); ++m) {
       light[0] += static_cast<float>(densities[m] * radiance *
@@ -76,13 +77,13 @@ TEST(MarchMedia, AnExponentialSlabShinesWithOneMinusTransmittance) {
 
 TEST(MarchMedia, ThinBodyShinesAsItsSourceTimesItsLength) {
   const LocalMedia sphere({Body(Shape::kEllipsoid, {0.0, 90.0, -10.0}, glm::dvec3(20.0), 1e-7)}, 1);
-  const MarchedLight light =
-      MarchMedia(sphere, glm::dvec3(0.0), {0.0, 1.0, 0.0}, INFINITY,
-                 [](double, const glm::dvec3&, std::span<const double> density) {
-                   Spectrum source(1);
-                   source[0] = static_cast<float>(3.0 * density[0]);
-                   return source;
-                 });
+  const MarchedLight light = MarchMedia(
+      sphere, glm::dvec3(0.0), {0.0, 1.0, 0.0}, INFINITY,
+      [](double, const glm::dvec3&, std::span<const double> density, std::span<const double>) {
+        Spectrum source(1);
+        source[0] = static_cast<float>(3.0 * density[0]);
+        return source;
+      });
   EXPECT_NEAR(static_cast<double>(light.radiance[0]), 60.0, 1e-4) << "optical depth 2e-6";
 }
 
@@ -134,7 +135,8 @@ TEST(MarchMedia, KeepsItsToleranceAgainstFineSteps) {
          Body(Shape::kEllipsoid, {5.0, 80.0, -20.0}, {50.0, 40.0, 40.0}, 0.3 * extinction),
          Layer(-10.0, 25.0, 0.02 * extinction)},
         1);
-    const MediaSource source = [&](double, const glm::dvec3& point, std::span<const double> rho) {
+    const MediaSource source = [&](double, const glm::dvec3& point, std::span<const double> rho,
+                                   std::span<const double>) {
       Spectrum light(1);
       for (std::size_t m = 0; m < rho.size(); ++m) {
         light[0] += static_cast<float>(rho[m] * media.all()[m]->optics().extinction_per_m[0] *
