@@ -88,8 +88,54 @@ LitVolume::LitVolume(const LocalBody& volume, const MediaSources& sources)
                                 sources.air.multiple_scattering().options().degree)),
       sky_(Sky()),
       sun_column_(SunColumns()),
-      sky_left_(SkyLeft(sky_)),
-      lamps_(Lamps()) {}
+      lamps_(Lamps()),
+      orders_(Orders()),
+      sky_left_(orders_ ? std::vector<VolumeGrid>{} : SkyLeft(sky_)),
+      extinction_per_m_(orders_ ? orders_->extinction_per_m() : volume.optics().extinction_per_m) {}
+
+std::unique_ptr<const VolumeOrders> LitVolume::Orders() const {
+  if (volume_.orders() == ScatteringOrders::kSingle || !HasOrdersOf(volume_.optics().phase))
+    return nullptr;
+  VolumeIllumination light{.to_sun = sources_.light.direction.seen,
+                           .sun_column_m = nullptr,
+                           .sky = nullptr,
+                           .lamps = nullptr,
+                           .emits = sources_.emission == MediaEmission::kOn};
+  const Spectrum none(sources_.bands());
+  const auto is_sunlit = [&](const glm::dvec3& unit) {
+    return sources_.SunInAir(volume_.FrameFromUnit(unit)) != none;
+  };
+  if (is_sunlit(glm::dvec3(0.5)) || is_sunlit({0.5, 0.5, 1.0})) {
+    light.sun_column_m = [&](const glm::dvec3& point) {
+      return ColumnToLight(point, sources_.light.direction.seen);
+    };
+  }
+  light.sky = [&](const glm::dvec3& from) { return SkyPastBodies(from); };
+  if (!lamps_.empty()) {
+    light.lamps = [&](const glm::dvec3& point, std::size_t band, double least_m) {
+      return LampBeams(point, band, least_m);
+    };
+  }
+  return std::make_unique<const VolumeOrders>(volume_, light);
+}
+
+Spectrum LitVolume::SkyPastBodies(const glm::dvec3& from) const {
+  const std::vector<double> all(
+      static_cast<std::size_t>(sources_.air.multiple_scattering().options().degree) + 1, 1.0);
+  SpectrumOf<double> depth(sources_.bands());
+  for (const auto& medium : sources_.media.all()) {
+    if (medium->IsLayer() || medium.get() == &volume_) continue;
+    AddDepth(*medium, medium->Column(volume_.Middle(), from, kEndless), depth);
+  }
+  Spectrum sky = sky_.Towards(from, all)[1];
+  for (std::size_t band = 0; band < sky.size(); ++band)
+    sky[band] *= static_cast<float>(std::exp(-depth[band]));
+  return sky;
+}
+
+std::optional<SpectrumOf<double>> LitVolume::WideExtinction_per_m() const {
+  return extinction_per_m_;
+}
 
 SkyMoments LitVolume::Sky() const {
   const SceneGeometry& geometry = sources_.geometry;
@@ -149,15 +195,47 @@ LitVolume::VolumeLamp LitVolume::LampOf(std::uint32_t number) const {
     const double distance = std::max(glm::length(lamp - point), 1e-9);
     SpectrumOf<double> depth = sources_.lamps->DepthTo(number, point);
     for (const auto& medium : sources_.media.all()) {
-      const bool is_exact = medium.get() == &volume_ && !volume_.Samples();
-      if (medium->IsLayer() || is_exact) continue;
+      if (medium->IsLayer() || medium.get() == &volume_) continue;
       AddDepth(*medium, medium->Column(point, (lamp - point) / distance, distance), depth);
     }
     for (std::size_t band = 0; band < depth.size(); ++band)
       depth[band] = std::min(depth[band], kDark);
     return depth;
   };
-  return {number, Tabulated(size, sources_.bands(), depth_at)};
+  VolumeLamp seen{number, Tabulated(size, sources_.bands(), depth_at), std::nullopt};
+  if (!volume_.Samples()) return seen;
+  seen.own_column = std::move(Tabulated(size, 1, [&](const glm::dvec3& unit) {
+                                const glm::dvec3 point = volume_.FrameFromUnit(unit);
+                                const double distance = std::max(glm::length(lamp - point), 1e-9);
+                                SpectrumOf<double> column(1);
+                                column[0] =
+                                    volume_.Column(point, (lamp - point) / distance, distance);
+                                return column;
+                              }).front());
+  return seen;
+}
+
+double LitVolume::ColumnToLamp(const VolumeLamp& seen, const glm::dvec3& point) const {
+  if (seen.own_column) return seen.own_column->At(volume_.UnitFromFrame(point));
+  const glm::dvec3 way = sources_.lamps->At(seen.number).lamp.position_m - point;
+  const double distance = std::max(glm::length(way), 1e-9);
+  return volume_.Column(point, way / distance, distance);
+}
+
+std::vector<LampBeam> LitVolume::LampBeams(const glm::dvec3& point, std::size_t band,
+                                           double least_m) const {
+  std::vector<LampBeam> beams;
+  for (const VolumeLamp& seen : lamps_) {
+    const LampLight::SceneLamp lamp = sources_.lamps->At(seen.number);
+    const glm::dvec3 way = lamp.lamp.position_m - point;
+    const double distance = std::max({glm::length(way), lamp.lamp.radius_m, least_m});
+    const glm::dvec3 travel = -glm::normalize(way);
+    const double left = std::exp(-seen.depth[band].At(volume_.UnitFromFrame(point)));
+    const double per_area = RelativeIntensity(lamp.lamp, travel) / (distance * distance);
+    beams.push_back({travel, per_area * left * static_cast<double>(lamp.intensity[band]),
+                     ColumnToLamp(seen, point)});
+  }
+  return beams;
 }
 
 // Returns the mean transmittance of the bodies over directions, weighted by the sky's radiance.
@@ -192,14 +270,20 @@ std::vector<VolumeGrid> LitVolume::SkyLeft(const SkyMoments& sky) const {
   });
 }
 
-void LitVolume::AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
-                                SpectrumOf<double>& depth) const {
+double LitVolume::ColumnToLight(const glm::dvec3& point, const glm::dvec3& to_disk) const {
   if (sun_column_ && to_disk == sources_.light.direction.seen) {
     const glm::dvec3 off = volume_.UnitFromFrame(point) - 0.5;
     if (std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) <= 0.5)
-      return AddDepth(volume_, sun_column_->At(off + 0.5), depth);
+      return sun_column_->At(off + 0.5);
   }
-  AddDepth(volume_, volume_.Column(point, to_disk, kEndless), depth);
+  return volume_.Column(point, to_disk, kEndless);
+}
+
+void LitVolume::AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
+                                SpectrumOf<double>& depth) const {
+  const double column_m = ColumnToLight(point, to_disk);
+  for (std::size_t band = 0; band < depth.size(); ++band)
+    depth[band] += column_m * extinction_per_m_[band];
 }
 
 void LitVolume::AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -213,22 +297,25 @@ void LitVolume::AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
   }
 }
 
-void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& point,
-                        const glm::dvec3& direction, double density, Spectrum& sum) const {
+void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& direction,
+                        const LightOnPoint& light, double density, Spectrum& sum) const {
   const LampLight::SceneLamp lamp = sources_.lamps->At(seen.number);
-  const glm::dvec3 way = lamp.lamp.position_m - point;
+  const glm::dvec3 way = lamp.lamp.position_m - light.point;
   const double distance = std::max({glm::length(way), lamp.lamp.radius_m, 1e-3});
   const glm::dvec3 towards = way / distance;
-  const MediumOptics& optics = volume_.optics();
-  const double per_area = RelativeIntensity(lamp.lamp, -towards) / (distance * distance) * density *
-                          Phase(optics.phase, glm::dot(direction, towards));
+  const double per_area = density * RelativeIntensity(lamp.lamp, -towards) / (distance * distance);
   if (per_area == 0.0) return;
-  const glm::dvec3 unit = volume_.UnitFromFrame(point);
-  const double own = volume_.Samples() ? 0.0 : volume_.Column(point, towards, distance);
+  const glm::dvec3 unit = volume_.UnitFromFrame(light.point);
+  const double own_m = ColumnToLamp(seen, light.point);
+  const double cos_scattering = glm::dot(direction, towards);
+  const double phase = orders_ ? 0.0 : Phase(volume_.optics().phase, cos_scattering);
   for (std::size_t band = 0; band < sum.size(); ++band) {
-    const double depth = own * optics.extinction_per_m[band] + seen.depth[band].At(unit);
-    sum[band] += lamp.intensity[band] *
-                 static_cast<float>(per_area * optics.scattering_per_m[band] * std::exp(-depth));
+    const double depth = own_m * extinction_per_m_[band] + seen.depth[band].At(unit);
+    const double scattered =
+        orders_ ? extinction_per_m_[band] *
+                      orders_->FirstOfLamp(cos_scattering, band, own_m + light.column_to_eye_m)
+                : volume_.optics().scattering_per_m[band] * phase;
+    sum[band] += lamp.intensity[band] * static_cast<float>(per_area * scattered * std::exp(-depth));
   }
 }
 
@@ -239,9 +326,19 @@ class LitVolume::OnOneRay final : public MediumOnRay {
         direction_(direction),
         phase_(static_cast<float>(Phase(lit.volume_.optics().phase,
                                         glm::dot(direction, lit.sources_.light.direction.seen)))),
-        sky_(lit.sky_.Towards(direction, lit.chi_)) {}
+        sky_(lit.sky_.Towards(direction, lit.chi_)) {
+    if (lit.orders_) look_ = lit.orders_->LookAlong(direction);
+  }
 
   void AddSource(const LightOnPoint& light, double density, Spectrum& sum) const override {
+    look_ ? AddAllOrders(light, density, sum) : AddFirstOrder(light, density, sum);
+    for (std::size_t band = 0; band < sum.size(); ++band)
+      sum[band] += static_cast<float>(density) * lit_.emission_per_m_[band];
+    for (const VolumeLamp& lamp : lit_.lamps_) lit_.AddLamp(lamp, direction_, light, density, sum);
+  }
+
+ private:
+  void AddFirstOrder(const LightOnPoint& light, double density, Spectrum& sum) const {
     SpectrumOf<double> depth = light.depth;
     lit_.AddDepthToLight(light.point, lit_.sources_.light.direction.seen, depth);
     const Spectrum sun = light.LitThrough(depth) * light.in_air;
@@ -253,18 +350,30 @@ class LitVolume::OnOneRay final : public MediumOnRay {
           phase_ * sun[band] +
           light.sky_left * sky[band] * static_cast<float>(lit_.sky_left_[band].At(unit));
       sum[band] +=
-          static_cast<float>(density) *
-          (lit_.scattering_per_m_[band] * irradiance[band] * arriving + lit_.emission_per_m_[band]);
+          static_cast<float>(density) * lit_.scattering_per_m_[band] * irradiance[band] * arriving;
     }
-    for (const VolumeLamp& lamp : lit_.lamps_)
-      lit_.AddLamp(lamp, light.point, direction_, density, sum);
   }
 
- private:
+  void AddAllOrders(const LightOnPoint& light, double density, Spectrum& sum) const {
+    const VolumeOrders& orders = *lit_.orders_;
+    const double column_m = lit_.ColumnToLight(light.point, lit_.sources_.light.direction.seen);
+    const Spectrum sun = light.LitThrough(light.depth) * light.in_air;
+    const VolumeOrders::Scattered scattered =
+        orders.At({light.point, column_m, light.column_to_eye_m}, *look_);
+    const Spectrum& irradiance = lit_.sources_.light.irradiance;
+    for (std::size_t band = 0; band < sum.size(); ++band) {
+      sum[band] += static_cast<float>(density * orders.extinction_per_m()[band]) *
+                   (irradiance[band] *
+                        (sun[band] * scattered.sun[band] + light.sky_left * scattered.sky[band]) +
+                    scattered.own[band]);
+    }
+  }
+
   const LitVolume& lit_;
   glm::dvec3 direction_;
   float phase_;
   std::vector<Spectrum> sky_;
+  std::optional<VolumeOrders::Look> look_;  // nothing: the first order alone
 };
 
 std::unique_ptr<const MediumOnRay> LitVolume::OnRay(const glm::dvec3& direction) const {

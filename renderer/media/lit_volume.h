@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The light that a body (LocalBody), here also called a volume, scatters once, and that it emits.
+// The light that a body (LocalBody), here also called a volume, scatters, and that it emits.
+//
+// By its ScatteringOrders it has the light of all orders (volume_orders.h), or that of the first
+// alone, as have volumes whose phase function is not of HasOrdersOf(). The first order has closed forms:
 //
 // Sunlight arrives through the air (RefractedBeam), the terrain's shadow, and every medium on its
 // path. Skylight is given by its moments (MultipleScattering) and the phase function, and attenuated
-// by the mean transmittance of the bodies over 26 directions. Light that a volume scatters again is
-// neglected. Columns towards the sun through a volume with Samples() are taken from a grid of at
+// by the mean transmittance of the bodies over 26 directions; light of all orders has its own sky,
+// which other bodies attenuate on the way to the middle of the volume. Columns towards the sun through a volume with Samples() are taken from a grid of at
 // most 64 samples per side; the error is 2 % of the sun's light in turbulent smoke with as many
 // samples itself.
 //
 // The eight lamps of the scene that are brightest at a volume light it, through the air around lamps
 // and bodies (optical depths are from a grid of at most 24 samples per side), shadowed by terrain.
+//
+// With light of all orders a volume attenuates light without the forward peak of its phase function:
+// its own, that of wide sources behind it, and sunlight in its shadow.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +27,7 @@
 #include "renderer/illumination/sky_moments.h"
 #include "renderer/media/lit_medium.h"
 #include "renderer/media/local_body.h"
+#include "renderer/media/volume_orders.h"
 
 namespace alpenglow::renderer {
 
@@ -31,6 +38,7 @@ class LitVolume final : public LitMedium {
 
   [[nodiscard]] std::unique_ptr<const MediumOnRay> OnRay(
       const glm::dvec3& direction) const override;
+  [[nodiscard]] std::optional<SpectrumOf<double>> WideExtinction_per_m() const override;
   /// A lamp's light varies on the scale of its distance from the ray, so panels end there.
   void AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
                std::vector<double>& cuts_m) const override;
@@ -44,17 +52,28 @@ class LitVolume final : public LitMedium {
   /// A lamp that lights the volume.
   struct VolumeLamp {
     std::uint32_t number;
-    std::vector<VolumeGrid> depth;  // [band] of the path; see LampOf
+    std::vector<VolumeGrid> depth;         // [band] of the path without the volume itself
+    std::optional<VolumeGrid> own_column;  // of the path in a volume with Samples() [m]
   };
 
   [[nodiscard]] SkyMoments Sky() const;
   [[nodiscard]] std::optional<VolumeGrid> SunColumns() const;
   [[nodiscard]] std::vector<VolumeGrid> SkyLeft(const SkyMoments& sky) const;
   [[nodiscard]] std::vector<VolumeLamp> Lamps() const;
-  /// The depth excludes the volume itself if it has no Samples(): its column is then exact.
   [[nodiscard]] VolumeLamp LampOf(std::uint32_t number) const;
-  /// Adds the light of a lamp that the volume scatters along a direction.
-  void AddLamp(const VolumeLamp& seen, const glm::dvec3& point, const glm::dvec3& direction,
+  /// Returns the column of the volume between a point and a lamp [m].
+  [[nodiscard]] double ColumnToLamp(const VolumeLamp& seen, const glm::dvec3& point) const;
+  /// Returns the column of the volume between a point and the light [m].
+  [[nodiscard]] double ColumnToLight(const glm::dvec3& point, const glm::dvec3& to_disk) const;
+  /// Returns the light of all orders; null: of the first order alone.
+  [[nodiscard]] std::unique_ptr<const VolumeOrders> Orders() const;
+  [[nodiscard]] std::vector<LampBeam> LampBeams(const glm::dvec3& point, std::size_t band,
+                                                double least_m) const;
+  /// Returns the sky's radiance from a direction at the middle of the volume past other bodies, per
+  /// unit solar irradiance [1/sr].
+  [[nodiscard]] Spectrum SkyPastBodies(const glm::dvec3& from) const;
+  /// Adds the light of a lamp that the volume scatters along a direction once.
+  void AddLamp(const VolumeLamp& seen, const glm::dvec3& direction, const LightOnPoint& light,
                double density, Spectrum& sum) const;
 
   const LocalBody& volume_;
@@ -63,8 +82,10 @@ class LitVolume final : public LitMedium {
   std::vector<double> chi_;
   SkyMoments sky_;
   std::optional<VolumeGrid> sun_column_;  // [m], of volumes with Samples()
-  std::vector<VolumeGrid> sky_left_;      // [band]
   std::vector<VolumeLamp> lamps_;
+  std::unique_ptr<const VolumeOrders> orders_;  // null: the first order alone
+  std::vector<VolumeGrid> sky_left_;            // [band]; empty with orders_
+  SpectrumOf<double> extinction_per_m_;         // for wide sources
 };
 
 }  // namespace alpenglow::renderer

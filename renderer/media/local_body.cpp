@@ -52,8 +52,8 @@ std::optional<LineSpan> InUnitBall(const UnitLine& line, double length_m) {
 
 }  // namespace
 
-LocalBody::LocalBody(const VolumePlacement& placement, MediumOptics optics)
-    : LocalMedium(std::move(optics)), placement_(placement) {
+LocalBody::LocalBody(const VolumePlacement& placement, MediumOptics optics, ScatteringOrders orders)
+    : LocalMedium(std::move(optics)), placement_(placement), orders_(orders) {
   for (int axis = 0; axis < 3; ++axis) ALPENGLOW_ENSURE(placement.size_m[axis], >, 0.0);
 }
 

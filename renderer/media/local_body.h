@@ -25,9 +25,12 @@ struct LineSpan {
 /// Immutable; safe to use from many threads. Directions are unit vectors.
 class LocalBody : public LocalMedium {
  public:
-  LocalBody(const VolumePlacement& placement, MediumOptics optics);
+  LocalBody(const VolumePlacement& placement, MediumOptics optics,
+            ScatteringOrders orders = ScatteringOrders::kAll);
 
   [[nodiscard]] const VolumePlacement& placement() const { return placement_; }
+  /// Returns the orders of scattering of which its light is wanted.
+  [[nodiscard]] ScatteringOrders orders() const { return orders_; }
   /// Returns the middle of the bounding box.
   [[nodiscard]] glm::dvec3 Middle() const { return FrameFromUnit(glm::dvec3(0.5)); }
   /// Returns the number of samples across, ahead and up that resolve the density. The body's light
@@ -51,6 +54,7 @@ class LocalBody : public LocalMedium {
 
  private:
   VolumePlacement placement_;
+  ScatteringOrders orders_;
 };
 
 /// Returns position and orientation of a body whose underside is at a height over a place, and at a

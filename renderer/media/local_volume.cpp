@@ -55,8 +55,9 @@ bool IsVoid(const Volume& volume) {
 }  // namespace
 
 LocalVolume::LocalVolume(const VolumePlacement& placement, std::optional<double> scale_height_m,
-                         std::shared_ptr<const VolumeGrid> grid, MediumOptics optics)
-    : LocalBody(placement, std::move(optics)),
+                         std::shared_ptr<const VolumeGrid> grid, MediumOptics optics,
+                         ScatteringOrders orders)
+    : LocalBody(placement, std::move(optics), orders),
       scale_height_m_(scale_height_m),
       grid_(std::move(grid)) {
   ALPENGLOW_ENSURE(int{scale_height_m.has_value()} + int{grid_ != nullptr}, <=, 1);
@@ -111,9 +112,9 @@ MediaList VolumesOf(const Scene& scene, const SceneGround& ground, const Medium&
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     const Volume& volume = scene.volumes[i];
     try {
-      auto made = std::make_shared<const LocalVolume>(PlacementOf(volume, ground),
-                                                      volume.scale_height_m, GridOf(volume),
-                                                      OpticsOf(volume, medium.wavelengths_nm));
+      auto made = std::make_shared<const LocalVolume>(
+          PlacementOf(volume, ground), volume.scale_height_m, GridOf(volume),
+          OpticsOf(volume, medium.wavelengths_nm), volume.orders);
       if (!IsVoid(volume)) volumes.push_back(std::move(made));
     } catch (const InputError& error) {
       throw InputError(fmt::format("volume {}: {}", i + 1, error.what()));

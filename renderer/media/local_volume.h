@@ -25,7 +25,8 @@ class LocalVolume final : public LocalBody {
  public:
   /// @param scale_height_m  of the density; empty: homogeneous. Must be empty if there is a grid.
   LocalVolume(const VolumePlacement& placement, std::optional<double> scale_height_m,
-              std::shared_ptr<const VolumeGrid> grid, MediumOptics optics = {});
+              std::shared_ptr<const VolumeGrid> grid, MediumOptics optics = {},
+              ScatteringOrders orders = ScatteringOrders::kAll);
 
   [[nodiscard]] std::optional<std::array<int, 3>> Samples() const override;
   [[nodiscard]] double DensityAt(const glm::dvec3& point) const override;

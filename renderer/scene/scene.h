@@ -161,6 +161,7 @@ struct Volume {
   std::vector<double> emission_per_m{0.0};  // W m^-2 sr^-1 nm^-1 per metre at density 1
   std::optional<double> temperature_k;  // of black-body emission by Kirchhoff's law; empty: none
   PhaseFunction phase;
+  ScatteringOrders orders = ScatteringOrders::kAll;
 };
 
 /// A layer of clouds over the whole scene, or a field of others; see CloudFieldsOf.

@@ -26,6 +26,8 @@ constexpr EnumNames kLightTypes{
     {std::pair{Light::Type::kPoint, "point"}, {Light::Type::kSpot, "spot"}}};
 constexpr EnumNames kVolumeShapes{{std::pair{VolumePlacement::Shape::kBox, "box"},
                                    {VolumePlacement::Shape::kEllipsoid, "ellipsoid"}}};
+constexpr EnumNames kScatteringOrders{
+    {std::pair{ScatteringOrders::kAll, "all"}, {ScatteringOrders::kSingle, "single"}}};
 
 constexpr std::pair kLatitudes{-90.0, 90.0};
 constexpr std::pair kLongitudes{-180.0, 360.0};
@@ -337,7 +339,9 @@ const TomlFields<Volume>& VolumeFields() {
         "# 1500.0"},
        {"droplet_diameter_um", Number<Volume>({kSmallestDroplet_um, kLargestDroplet_um}),
         "micrometres", "", "instead of g", "# 15.0"},
-       {"g", Number<Volume>({-0.99, 0.99}), "", "", "of Henyey and Greenstein", "0.5"}},
+       {"g", Number<Volume>({-0.99, 0.99}), "", "", "of Henyey and Greenstein", "0.5"},
+       {"orders", Name(&Volume::orders, kScatteringOrders, OneOfQuoted), "", "",
+        "of scattering; all: see Limits", "\"all\""}},
       "smoke, a bank of fog, a glowing gas; any number",
       /*is_list=*/true};
   return fields;

@@ -71,6 +71,9 @@ class VolumeGrid {
 /// Throws InputError for a grid with a side outside of [2, kMostGridSamples].
 void CheckGridSize(const std::array<int, 3>& size);
 
+/// The orders of scattering of which a volume has light: the first alone, or all.
+enum class ScatteringOrders { kSingle, kAll };
+
 /// Position and orientation of a volume, in the frame of SceneGround.
 struct VolumePlacement {
   enum class Shape { kBox, kEllipsoid };

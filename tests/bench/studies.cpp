@@ -27,6 +27,7 @@ constexpr Study kStudies[] = {
     {"stokes_study", StokesStudy},
     {"tile_memory", TileMemory},
     {"viewer_error", ViewerError},
+    {"volume_error", VolumeError},
 #ifdef ALPENGLOW_STUDIES_OF_VIEWER
     {"shade_error", ShadeError},
     {"viewer_parity", ViewerParity},

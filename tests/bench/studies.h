@@ -16,6 +16,7 @@ void SkyTint(int count, char** arguments);
 void StokesStudy(int count, char** arguments);
 void TileMemory(int count, char** arguments);
 void ViewerError(int count, char** arguments);
+void VolumeError(int count, char** arguments);
 
 // These need the viewer.
 void ShadeError(int count, char** arguments);

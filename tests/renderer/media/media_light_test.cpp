@@ -89,11 +89,13 @@ MediumOptics Optics(double extinction, double albedo, double emission = 0.0) {
 
 std::shared_ptr<const LocalVolume> Box(const glm::dvec3& bottom, const glm::dvec3& size,
                                        const MediumOptics& optics,
-                                       std::shared_ptr<const VolumeGrid> grid = nullptr) {
+                                       std::shared_ptr<const VolumeGrid> grid = nullptr,
+                                       ScatteringOrders orders = ScatteringOrders::kAll) {
   VolumePlacement placement;
   placement.bottom = bottom;
   placement.size_m = size;
-  return std::make_shared<const LocalVolume>(placement, std::nullopt, std::move(grid), optics);
+  return std::make_shared<const LocalVolume>(placement, std::nullopt, std::move(grid), optics,
+                                             orders);
 }
 
 const glm::dvec3 kMediaEye(0.0, 0.0, 50.0);
@@ -101,7 +103,8 @@ const glm::dvec3 kMediaEye(0.0, 0.0, 50.0);
 TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
   const MediaStage& stage = TheStage();
   const MediumOptics optics = Optics(1e-6, 0.9);
-  const MediaLight lit = stage.Lit({Box({0.0, 300.0, 20.0}, {50.0, 20.0, 60.0}, optics)});
+  const MediaLight lit = stage.Lit(
+      {Box({0.0, 300.0, 20.0}, {50.0, 20.0, 60.0}, optics, nullptr, ScatteringOrders::kSingle)});
   const glm::dvec3 look(0.0, 1.0, 0.0), there(0.0, 300.0, 50.0);
   const MarchedLight light = lit.Along(kMediaEye, look, INFINITY, nullptr);
   const Spectrum direct = stage.SunSeen(there, 0.0);
@@ -158,7 +161,7 @@ TEST(MediaLight, ShadowsWithinASmokeCloudAreThoseOfShadowRays) {
   const MediaStage& stage = TheStage();
   for (const double extinction : {0.01, 0.04}) {
     const auto cloud = Box({0.0, 300.0, 0.0}, {120.0, 120.0, 100.0}, Optics(extinction, 0.9),
-                           tests::NoiseGrid(40, 6.0, 0.3, 2));
+                           tests::NoiseGrid(40, 6.0, 0.3, 2), ScatteringOrders::kSingle);
     const MediaLight lit = stage.Lit({cloud});
     for (int i = 0; i < 6; ++i) {
       const glm::dvec3 look = glm::normalize(glm::dvec3(0.03 * i - 0.08, 1.0, 0.02 * i - 0.06));
@@ -172,6 +175,24 @@ TEST(MediaLight, ShadowsWithinASmokeCloudAreThoseOfShadowRays) {
       EXPECT_NEAR(static_cast<double>(all.radiance[1] - shaded.radiance[1]) / expected, 1.0, 0.02)
           << extinction << ": columns to the sun from a grid of 40 samples a side";
     }
+  }
+}
+
+TEST(MediaLight, ThinVolumesHaveTheSameLightOfAllOrdersAsOfTheFirst) {
+  const MediaStage& stage = TheStage();
+  const auto lit = [&](ScatteringOrders orders, const glm::dvec3& look) {
+    const auto box =
+        Box({0.0, 300.0, 20.0}, {50.0, 20.0, 60.0}, Optics(1e-5, 0.9), nullptr, orders);
+    return stage.Lit({box}).Along(kMediaEye, look, INFINITY, nullptr);
+  };
+  const glm::dvec3 look(0.0, 1.0, 0.0);
+  const MarchedLight all = lit(ScatteringOrders::kAll, look);
+  const MarchedLight single = lit(ScatteringOrders::kSingle, look);
+  for (std::size_t band = 0; band < 3; ++band) {
+    EXPECT_NEAR(static_cast<double>(all.radiance[band] / single.radiance[band]), 1.0, 0.03)
+        << "moments of degree 3 of the sky; 3 % of the scattered light is in the forward peak";
+    EXPECT_FLOAT_EQ(all.narrow_transmittance[band], single.narrow_transmittance[band]);
+    EXPECT_FLOAT_EQ(single.narrow_transmittance[band], single.transmittance[band]);
   }
 }
 
@@ -282,8 +303,9 @@ TEST(MediaLight, LampsLightAVolumeLikeHomogeneousAir) {
   const LampLight lamps(stage.scene, stage.ground, stage.medium, stage.colour);
   stage.light.source.direction = Unrefracted({0.0, 0.6, -0.8});
   const MediumOptics optics = Optics(0.01, 0.8);
-  const MediaLight lit =
-      stage.Lit({Box({0.0, 0.0, -200.0}, {500.0, 500.0, 500.0}, optics)}, &lamps);
+  const MediaLight lit = stage.Lit(
+      {Box({0.0, 0.0, -200.0}, {500.0, 500.0, 500.0}, optics, nullptr, ScatteringOrders::kSingle)},
+      &lamps);
   const LampLight::SceneLamp in_scene = lamps.At(0);
   for (const double rise : {-0.05, 0.0, 0.03, 0.4}) {
     const glm::dvec3 look = glm::normalize(glm::dvec3(0.02, 1.0, rise));

@@ -200,6 +200,7 @@ extinction_per_m = [0.1, 0.2, 0.3, 0.4]
 albedo = 0.6
 temperature_k = 900
 g = 0.3
+orders = "single"
 [[volume]]
 latitude = 35.37
 longitude = 138.73
@@ -211,6 +212,8 @@ extinction_per_m = 0.1
   const Volume& bank = scene.volumes[0];
   EXPECT_EQ(bank.shape, VolumePlacement::Shape::kEllipsoid);
   EXPECT_EQ(bank.height, (Height{4.0, true}));
+  EXPECT_EQ(bank.orders, ScatteringOrders::kAll);
+  EXPECT_EQ(scene.volumes[1].orders, ScatteringOrders::kSingle);
   EXPECT_DOUBLE_EQ(bank.scale_height_m.value(), 25.0);
   EXPECT_NEAR(bank.extinction_per_m.at(0), 0.01, 1e-12) << "3.912 optical depths";
   EXPECT_EQ(bank.phase, DropletPhase(15.0)) << "drops when nothing is said";

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// Light of all orders of scattering in a body (LocalBody), here also called a volume.
+//
+// Light that is scattered more than once has the moments M_lm on cells of cloud_light/cloud_moments.h,
+// solved in the frame of the body. In the medium without the forward peak (cloud_light/cloud_optics.h)
+// of scaled extinction sigma' the source of the body is
+//
+//   sigma' (w' p_eff(nu, f w (tau_s + tau)) E exp(-tau'_s) + sum w' chi'_l Y_lm M_lm)
+//
+// where E is the irradiance of the sun without the body, tau_s and tau are the optical depths of the
+// body towards the sun and the eye, and p_eff (cloud_phase/forward_peak.h) has the light of the peak.
+// M has three parts:
+//
+//   - light of the sun for unit irradiance, one solution for every pair of extinction and albedo;
+//   - light of the sky, one solution for every band: it enters from the directions of the solution
+//     as it arrives at the middle of the body;
+//   - light of lamps and the body's own emission, one solution for every band.
+//
+// The light of the sun times the irradiance at a point is that of the body under the same irradiance
+// everywhere: a shadow of terrain that covers a part of it is not blurred.
+//
+// Against traced paths the light of plumes is within 6 % (root mean square) for a largest optical
+// depth of 10 and within 9 % for 50: tests/renderer/media/volume_orders_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "atmosphere/colour/spectrum.h"
+#include "renderer/cloud_light/cloud_moments.h"
+#include "renderer/cloud_light/cloud_optics.h"
+#include "renderer/media/local_body.h"
+
+namespace alpenglow::renderer {
+
+/// Returns whether the light of all orders can be solved for a phase function. Its mean cosine must be
+/// -0.3 or more: for phase functions that scatter further backwards the medium without forward peak has
+/// moments that no phase function has.
+[[nodiscard]] bool HasOrdersOf(const PhaseFunction& phase);
+
+/// The light of a lamp at a point.
+struct LampBeam {
+  glm::dvec3 travel;  // unit
+  double irradiance;  // without the body on its way [W m^-2 nm^-1]
+  double column_m;    // of the body on its way
+};
+
+/// The sources of light in a body. Functions are called from many threads.
+struct VolumeIllumination {
+  glm::dvec3 to_sun{0.0, 0.0, 1.0};  // in the frame of SceneGround, unit
+  /// Returns the column of the body from a point in it to the sun [m]; null: no sun.
+  std::function<double(const glm::dvec3& point)> sun_column_m;
+  /// Returns the radiance that arrives from a direction, in any unit; null: none.
+  std::function<Spectrum(const glm::dvec3& from)> sky;
+  /// Returns the beams of lamps at a point; null: no lamps.
+  /// @param least_m  distances to lamps count as at least this.
+  std::function<std::vector<LampBeam>(const glm::dvec3& point, std::size_t band, double least_m)>
+      lamps;
+  bool emits = false;
+};
+
+/// Immutable; safe to use from many threads. It refers to the body.
+class VolumeOrders {
+ public:
+  /// Solves with as many threads as are free; the result does not depend on their number.
+  /// @param volume  of a phase function with HasOrdersOf().
+  /// @param most_cells  of the finest grid in the box of the body, >= 64.
+  VolumeOrders(const LocalBody& volume, const VolumeIllumination& light,
+               double most_cells = kMostCells);
+
+  static constexpr double kMostCells = 32768.0;
+
+  [[nodiscard]] const CloudOptics& OpticsOf(std::size_t band) const { return *optics_[band]; }
+  /// Returns the scaled extinction at density 1 [1/m].
+  [[nodiscard]] const SpectrumOf<double>& extinction_per_m() const { return extinction_per_m_; }
+
+  /// The light of one direction of view.
+  struct Look {
+    glm::dvec3 direction;
+    ForwardPeak::Angle peak;              // of the sun
+    std::vector<CloudHarmonics> factors;  // [band]
+  };
+  /// @param look  from the eye, unit.
+  [[nodiscard]] Look LookAlong(const glm::dvec3& look) const;
+
+  /// A point of a body on a ray from the eye.
+  struct Place {
+    const glm::dvec3& point;
+    double column_to_sun_m, column_to_eye_m;  // of the body
+  };
+  /// Light that is scattered into a direction of view, per unit of scaled extinction.
+  struct Scattered {
+    Spectrum sun;  // for unit irradiance of the sun without the body [1/sr]
+    Spectrum sky;  // in the unit of VolumeIllumination::sky
+    Spectrum own;  // of lamps from the second order on, and of emission from other points
+                   // [W m^-2 sr^-1 nm^-1]
+  };
+  [[nodiscard]] Scattered At(const Place& place, const Look& look) const;
+
+  /// Returns w' p_eff at a band, the factor on the light of a lamp in the source of the first order
+  /// [1/sr].
+  /// @param column_m  of the body towards the lamp and the eye, summed.
+  [[nodiscard]] double FirstOfLamp(double cos_scattering, std::size_t band, double column_m) const;
+
+ private:
+  [[nodiscard]] double FirstOfSun(const Look& look, std::size_t band, double column_m) const;
+  [[nodiscard]] double PeakDepth(std::size_t band, double column_m) const;
+  [[nodiscard]] glm::dvec3 InBody(const glm::dvec3& point) const;
+  [[nodiscard]] glm::dvec3 InFrame(const glm::dvec3& in_body) const;
+  [[nodiscard]] std::vector<std::shared_ptr<const CloudCells>> Cells(double most_cells) const;
+  void Solve(std::size_t band, const VolumeIllumination& light);
+  void SolveAll(const VolumeIllumination& light);
+  [[nodiscard]] CloudCellContent ContentOf(const CloudBox& cell) const;
+  /// Returns the moments of the sun's beam in a cell for unit irradiance.
+  [[nodiscard]] CloudHarmonics SunIn(const CloudBox& cell, double scaled_per_m,
+                                     const VolumeIllumination& light) const;
+  /// Returns those of lamps and emission.
+  [[nodiscard]] CloudHarmonics OwnIn(const CloudBox& cell, std::size_t band,
+                                     const VolumeIllumination& light) const;
+  /// Calls visit(point, density) for points of a cell in the body.
+  template <typename Visit>
+  void EachSample(const CloudBox& cell, const Visit& visit) const;
+
+  const LocalBody& volume_;
+  glm::dmat3 frame_from_body_;
+  glm::dvec3 to_sun_;
+  bool has_peak_;
+  int samples_per_side_;                                    // of a cell
+  std::vector<std::shared_ptr<const CloudOptics>> optics_;  // [band]
+  SpectrumOf<double> extinction_per_m_;
+  std::vector<std::shared_ptr<const CloudCells>> cells_;  // from the coarsest to the finest
+  // Of each band, or nothing:
+  std::vector<std::shared_ptr<const CloudMoments>> sun_, sky_, own_;
+};
+
+}  // namespace alpenglow::renderer

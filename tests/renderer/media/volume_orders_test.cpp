@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/media/volume_orders.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "renderer/media/media_march.h"
+#include "tests/fixtures/plume.h"
+#include "tests/fixtures/plume_views.h"
+#include "tests/fixtures/sanitized.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+using tests::MakePlume;
+using tests::Plume;
+using tests::PlumeCase;
+
+constexpr double kCells = tests::ScaledDown(VolumeOrders::kMostCells, 1000.0);
+
+MediumOptics SmokeOptics(double extinction_per_m, double albedo, double g) {
+  MediumOptics optics{SpectrumOf<double>(1), SpectrumOf<double>(1), SpectrumOf<double>(1),
+                      tests::LobeOf(g)};
+  optics.extinction_per_m[0] = extinction_per_m;
+  optics.scattering_per_m[0] = albedo * extinction_per_m;
+  return optics;
+}
+
+/// Returns a homogeneous ellipsoid over the origin, turned by a heading.
+LocalVolume SmokeBall(const MediumOptics& optics, const glm::dvec3& size_m,
+                      double heading_rad = 0.0) {
+  VolumePlacement placement;
+  placement.shape = VolumePlacement::Shape::kEllipsoid;
+  placement.size_m = size_m;
+  placement.across = {std::cos(heading_rad), -std::sin(heading_rad), 0.0};
+  placement.ahead = {std::sin(heading_rad), std::cos(heading_rad), 0.0};
+  return {placement, std::nullopt, nullptr, optics};
+}
+
+std::function<Spectrum(const glm::dvec3&)> UniformSky(float radiance) {
+  return [radiance](const glm::dvec3&) {
+    Spectrum sky(1);
+    sky[0] = radiance;
+    return sky;
+  };
+}
+
+/// Light that a body sends to the origin of a ray.
+struct BodyLight {
+  double radiance, transmittance;
+};
+/// @param part  of the light, for example VolumeOrders::Scattered::sun.
+/// @param more  radiance of the body's own emission, per unit of scaled extinction.
+BodyLight Through(const LocalVolume& volume, const VolumeOrders& orders, const CloudRay& ray,
+                  const glm::dvec3& to_sun, Spectrum VolumeOrders::Scattered::*part,
+                  float more = 0.0F) {
+  const LocalMedia media({std::shared_ptr<const LocalMedium>(&volume, [](const LocalMedium*) {})},
+                         1);
+  const VolumeOrders::Look look = orders.LookAlong(ray.direction);
+  const auto source = [&](double, const glm::dvec3& point, std::span<const double> densities,
+                          std::span<const double> columns_m) {
+    const double to_sun_m = volume.Column(point, to_sun, std::numeric_limits<double>::infinity());
+    Spectrum light = orders.At({point, to_sun_m, columns_m[0]}, look).*part;
+    light[0] = (light[0] + more) * static_cast<float>(densities[0] * orders.extinction_per_m()[0]);
+    return light;
+  };
+  const std::vector<SpectrumOf<double>> extinction{orders.extinction_per_m()};
+  const MarchedLight light =
+      MarchMedia(media, ray.origin, ray.direction, 1e5, source, kMarchTolerance, {}, extinction);
+  return {static_cast<double>(light.radiance[0]), static_cast<double>(light.transmittance[0])};
+}
+
+const glm::dvec3 kSunOverSmoke = glm::normalize(glm::dvec3(0.7, 0.3, 0.6));
+const std::array<CloudRay, 3> kRaysThroughSmoke{{{{-500.0, 3.0, 40.0}, {1.0, 0.0, 0.0}},
+                                                 {{10.0, -500.0, 60.0}, {0.0, 1.0, 0.0}},
+                                                 {{20.0, 12.0, 900.0}, {0.0, 0.0, -1.0}}}};
+
+/// Errors of the whole light of a plume, of all orders and of the first.
+void ExpectPlumeErrors(const PlumeCase& of, double most_rms) {
+  const Plume plume = MakePlume(of);
+  const glm::dvec3 to_sun = TowardsAzimuth(20.0, 35.0);
+  const auto traced = tests::TracedPlume(plume, to_sun, 208, tests::ScaledDown(8, 3));
+  const tests::PlumeOrders orders(plume, to_sun, kCells);
+  const tests::PlumeErrors all =
+      tests::ErrorsOfPlume(traced, [&](const CloudRay& ray) { return orders.Along(ray); });
+  const tests::PlumeErrors single =
+      tests::ErrorsOfPlume(traced, tests::FirstOrderOfPlume(plume, to_sun));
+  // The coarse cells of the small case are twice as far from the truth.
+  const double more = tests::ScaledDown(1.0, 2.0);
+  EXPECT_LT(all.sun.Rms(), more * most_rms) << of.albedo << ", " << of.g;
+  EXPECT_LT(all.whole.Rms(), more * most_rms) << of.albedo << ", " << of.g;
+  EXPECT_GT(single.sun.Rms(), 0.5) << "what the first order alone is wrong by";
+}
+
+TEST(VolumeOrders, PlumesOfDepth10HaveTheLightOfTracedPaths) {
+  for (const auto& [albedo, g] : {std::pair{1.0, 0.85}, {0.8, 0.85}, {1.0, 0.7}})
+    ExpectPlumeErrors({10.0, albedo, g, tests::ScaledDown(64, 24)}, 0.06);
+}
+
+TEST(VolumeOrders, PlumesOfDepth50HaveTheLightOfTracedPaths) {
+  for (const auto& [albedo, g] : {std::pair{1.0, 0.85}, {0.8, 0.85}, {1.0, 0.7}})
+    ExpectPlumeErrors({50.0, albedo, g, tests::ScaledDown(64, 24)}, 0.09);
+}
+
+TEST(VolumeOrders, WhiteBodiesInUniformLightAreInvisible) {
+  for (const double g : {0.0, 0.5, 0.85}) {
+    const LocalVolume ball = SmokeBall(SmokeOptics(0.05, 1.0, g), {200.0, 140.0, 100.0}, 0.4);
+    const VolumeOrders orders(ball,
+                              {.to_sun = kSunOverSmoke,
+                               .sun_column_m = nullptr,
+                               .sky = UniformSky(1.0F),
+                               .lamps = nullptr,
+                               .emits = false},
+                              kCells);
+    for (const CloudRay& ray : kRaysThroughSmoke) {
+      const BodyLight light =
+          Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
+      EXPECT_NEAR(light.radiance + light.transmittance, 1.0, 0.01)
+          << g << ": the residual of the solution is 0.5 % of the light that enters";
+    }
+  }
+}
+
+TEST(VolumeOrders, BodiesAsHotAsTheirSurroundingsAreInvisible) {
+  // Kirchhoff's law: emission is absorption times the radiance of the surroundings.
+  MediumOptics optics = SmokeOptics(0.05, 0.7, 0.6);
+  optics.emission_per_m[0] = 0.05 * 0.3;
+  const LocalVolume ball = SmokeBall(optics, {200.0, 140.0, 100.0});
+  const VolumeOrders orders(ball,
+                            {.to_sun = kSunOverSmoke,
+                             .sun_column_m = nullptr,
+                             .sky = UniformSky(1.0F),
+                             .lamps = nullptr,
+                             .emits = true},
+                            kCells);
+  const auto own = static_cast<float>(optics.emission_per_m[0] / orders.extinction_per_m()[0]);
+  for (const CloudRay& ray : kRaysThroughSmoke) {
+    const BodyLight of_sky =
+        Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
+    const BodyLight hot =
+        Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::own, own);
+    EXPECT_NEAR(of_sky.radiance + hot.radiance + hot.transmittance, 1.0, 0.01);
+    EXPECT_LT(of_sky.radiance + hot.transmittance, 0.8) << "smoke that does not glow is dark";
+  }
+}
+
+TEST(VolumeOrders, AFarLampIsASun) {
+  const LocalVolume ball = SmokeBall(SmokeOptics(0.05, 0.9, 0.6), glm::dvec3(120.0));
+  const auto column = [&](const glm::dvec3& point) {
+    return ball.Column(point, kSunOverSmoke, std::numeric_limits<double>::infinity());
+  };
+  const auto lamp = [&](const glm::dvec3& point, std::size_t, double) {
+    return std::vector<LampBeam>{{-kSunOverSmoke, 1.0, column(point)}};
+  };
+  const VolumeOrders orders(ball,
+                            {.to_sun = kSunOverSmoke,
+                             .sun_column_m = column,
+                             .sky = nullptr,
+                             .lamps = lamp,
+                             .emits = false},
+                            kCells);
+  for (const CloudRay& ray : kRaysThroughSmoke) {
+    const double sun =
+        Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sun).radiance;
+    const double higher =
+        Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::own).radiance;
+    const glm::dvec3 middle(0.0, 0.0, 60.0);
+    EXPECT_GT(higher, 0.1 * sun);
+    EXPECT_LT(higher, sun) << "the sun has the first order, too";
+    const VolumeOrders::Look look = orders.LookAlong(ray.direction);
+    const double first =
+        orders.FirstOfLamp(glm::dot(ray.direction, kSunOverSmoke), 0, 2.0 * column(middle)) *
+        std::exp(-orders.extinction_per_m()[0] * column(middle));
+    const VolumeOrders::Scattered at = orders.At({middle, column(middle), column(middle)}, look);
+    EXPECT_NEAR((first + static_cast<double>(at.own[0])) / static_cast<double>(at.sun[0]), 1.0,
+                0.02)
+        << "samples of the lamp's beam stand for their middles, those of the sun for their parts";
+  }
+}
+
+TEST(VolumeOrders, ATurnedBodyHasTheSameLight) {
+  const double turn = 0.9;
+  const auto turned = [&](const glm::dvec3& v) {
+    return glm::dvec3(std::cos(turn) * v.x + std::sin(turn) * v.y,
+                      -std::sin(turn) * v.x + std::cos(turn) * v.y, v.z);
+  };
+  const auto light = [&](double heading_rad, const glm::dvec3& to_sun, const CloudRay& ray) {
+    const LocalVolume ball =
+        SmokeBall(SmokeOptics(0.04, 0.9, 0.7), {160.0, 100.0, 90.0}, heading_rad);
+    const VolumeOrders orders(
+        ball,
+        {.to_sun = to_sun,
+         .sun_column_m = [&](const glm::dvec3& point) { return ball.Column(point, to_sun, 1e6); },
+         .sky = nullptr,
+         .lamps = nullptr,
+         .emits = false},
+        1000.0);
+    return Through(ball, orders, ray, to_sun, &VolumeOrders::Scattered::sun).radiance;
+  };
+  for (const CloudRay& ray : kRaysThroughSmoke) {
+    const CloudRay other{turned(ray.origin), turned(ray.direction)};
+    EXPECT_NEAR(light(turn, turned(kSunOverSmoke), other) / light(0.0, kSunOverSmoke, ray), 1.0,
+                1e-4)
+        << "the solution is in the frame of the body";
+  }
+}
+
+TEST(VolumeOrders, PhaseFunctionsThatScatterBackwardsHaveNone) {
+  EXPECT_TRUE(HasOrdersOf(tests::LobeOf(0.99)));
+  EXPECT_TRUE(HasOrdersOf(tests::LobeOf(0.0)));
+  EXPECT_TRUE(HasOrdersOf(tests::LobeOf(-0.3)));
+  EXPECT_FALSE(HasOrdersOf(tests::LobeOf(-0.5)));
+}
+
+TEST(VolumeOrders, EmptyAndBlackBodiesScatterNothing) {
+  for (const double extinction_per_m : {0.0, 1e-12, 0.05}) {
+    const LocalVolume ball = SmokeBall(SmokeOptics(extinction_per_m, 0.0, 0.5), glm::dvec3(100.0));
+    const VolumeOrders orders(ball,
+                              {.to_sun = kSunOverSmoke,
+                               .sun_column_m = nullptr,
+                               .sky = UniformSky(1.0F),
+                               .lamps = nullptr,
+                               .emits = false},
+                              1000.0);
+    const VolumeOrders::Look look = orders.LookAlong({1.0, 0.0, 0.0});
+    const VolumeOrders::Scattered light = orders.At({{0.0, 0.0, 50.0}, 50.0, 50.0}, look);
+    EXPECT_EQ(light.sky[0], 0.0F);
+    EXPECT_EQ(light.sun[0], 0.0F);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow::renderer
