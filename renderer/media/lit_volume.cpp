@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "lut/multiple_scattering/spherical_harmonics.h"
+#include "renderer/media/body_glow.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -88,7 +91,7 @@ LitVolume::LitVolume(const LocalBody& volume, const MediaSources& sources)
                                 sources.air.multiple_scattering().options().degree)),
       sky_(Sky()),
       sun_column_(SunColumns()),
-      lamps_(Lamps()),
+      lamps_(AllLamps()),
       orders_(Orders()),
       sky_left_(orders_ ? std::vector<VolumeGrid>{} : SkyLeft(sky_)),
       extinction_per_m_(orders_ ? orders_->extinction_per_m() : volume.optics().extinction_per_m) {}
@@ -170,54 +173,101 @@ std::vector<LitVolume::VolumeLamp> LitVolume::Lamps() const {
   std::vector<std::pair<double, std::uint32_t>> bright;
   for (const std::uint32_t number : lamps.All()) {
     const LampLight::SceneLamp lamp = lamps.At(number);
-    const glm::dvec3 nearest = volume_.FrameFromUnit(
-        glm::clamp(volume_.UnitFromFrame(lamp.lamp.position_m), glm::dvec3(0.0), glm::dvec3(1.0)));
-    const double distance = std::max(glm::length(nearest - lamp.lamp.position_m), 1.0);
+    const double distance = std::max(NearestTo(lamp.lamp), 1.0);
     bright.emplace_back(-lamp.candela / (distance * distance), number);
   }
   std::sort(bright.begin(), bright.end());
   std::vector<VolumeLamp> chosen;
   for (const auto& [minus_lux, number] : bright) {
     if (chosen.size() == kMost || minus_lux > kDimmest * bright.front().first) break;
-    chosen.push_back(LampOf(number));
+    const LampLight::SceneLamp scene_lamp = lamps.At(number);
+    const glm::dvec3 lamp = scene_lamp.lamp.position_m;
+    chosen.push_back(
+        LampOf(scene_lamp.lamp, scene_lamp.intensity, [&, at = number](const glm::dvec3& point) {
+          SpectrumOf<double> depth = lamps.DepthTo(at, point);
+          for (const auto& medium : sources_.media.all()) {
+            if (!medium->IsLayer()) AddOther(*medium, point, lamp, depth);
+          }
+          return depth;
+        }));
   }
   return chosen;
 }
 
-LitVolume::VolumeLamp LitVolume::LampOf(std::uint32_t number) const {
+std::vector<LitVolume::VolumeLamp> LitVolume::AllLamps() const {
+  std::vector<VolumeLamp> lamps = Lamps();
+  std::ranges::move(Glows(), std::back_inserter(lamps));
+  return lamps;
+}
+
+std::vector<LitVolume::VolumeLamp> LitVolume::Glows() const {
+  constexpr double kDimmest = 1e-3;
+  if (sources_.emission == MediaEmission::kOff) return {};
+  const Spectrum sun = sources_.light.irradiance * sources_.SunInAir(volume_.Middle());
+  std::vector<VolumeLamp> glows;
+  for (const auto& glowing : sources_.media.all()) {
+    const auto* body = dynamic_cast<const LocalBody*>(glowing.get());
+    if (body == nullptr || body == &volume_) continue;
+    const BodyGlow glow = GlowOf(*body);
+    const auto distance = static_cast<float>(std::max(NearestTo(glow.lamp), glow.lamp.radius_m));
+    bool is_bright = false;
+    for (std::size_t band = 0; band < sun.size(); ++band) {
+      const float dimmest = static_cast<float>(kDimmest) * sun[band] * distance * distance;
+      is_bright = is_bright || glow.intensity[band] > dimmest;
+    }
+    if (!is_bright) continue;
+    glows.push_back(LampOf(glow.lamp, glow.intensity, [&](const glm::dvec3& point) {
+      SpectrumOf<double> depth(sources_.bands());
+      for (const auto& medium : sources_.media.all()) {
+        if (!medium->IsLayer() && medium != glowing)
+          AddOther(*medium, point, glow.lamp.position_m, depth);
+      }
+      return depth;
+    }));
+  }
+  return glows;
+}
+
+void LitVolume::AddOther(const LocalMedium& medium, const glm::dvec3& point, const glm::dvec3& lamp,
+                         SpectrumOf<double>& depth) const {
+  if (&medium == &volume_) return;
+  const double distance = std::max(glm::length(lamp - point), 1e-9);
+  AddDepth(medium, medium.Column(point, (lamp - point) / distance, distance), depth);
+}
+
+double LitVolume::NearestTo(const Lamp& lamp) const {
+  const glm::dvec3 nearest = volume_.FrameFromUnit(
+      glm::clamp(volume_.UnitFromFrame(lamp.position_m), glm::dvec3(0.0), glm::dvec3(1.0)));
+  return glm::length(nearest - lamp.position_m);
+}
+
+LitVolume::VolumeLamp LitVolume::LampOf(const Lamp& lamp, const Spectrum& intensity,
+                                        const LampDepth& depth) const {
   constexpr int kMost = 24, kPlain = 8;
   constexpr double kDark = 60.0;
   std::array<int, 3> size = volume_.Samples().value_or(std::array{kPlain, kPlain, kPlain});
   for (int& side : size) side = std::min(side, kMost);
-  const glm::dvec3 lamp = sources_.lamps->At(number).lamp.position_m;
   const auto depth_at = [&](const glm::dvec3& unit) {
-    const glm::dvec3 point = volume_.FrameFromUnit(unit);
-    const double distance = std::max(glm::length(lamp - point), 1e-9);
-    SpectrumOf<double> depth = sources_.lamps->DepthTo(number, point);
-    for (const auto& medium : sources_.media.all()) {
-      if (medium->IsLayer() || medium.get() == &volume_) continue;
-      AddDepth(*medium, medium->Column(point, (lamp - point) / distance, distance), depth);
-    }
-    for (std::size_t band = 0; band < depth.size(); ++band)
-      depth[band] = std::min(depth[band], kDark);
-    return depth;
+    SpectrumOf<double> along = depth(volume_.FrameFromUnit(unit));
+    for (std::size_t band = 0; band < along.size(); ++band)
+      along[band] = std::min(along[band], kDark);
+    return along;
   };
-  VolumeLamp seen{number, Tabulated(size, sources_.bands(), depth_at), std::nullopt};
-  if (!volume_.Samples()) return seen;
-  seen.own_column = std::move(Tabulated(size, 1, [&](const glm::dvec3& unit) {
-                                const glm::dvec3 point = volume_.FrameFromUnit(unit);
-                                const double distance = std::max(glm::length(lamp - point), 1e-9);
-                                SpectrumOf<double> column(1);
-                                column[0] =
-                                    volume_.Column(point, (lamp - point) / distance, distance);
-                                return column;
-                              }).front());
+  const auto column_at = [&](const glm::dvec3& unit) {
+    const glm::dvec3 way = lamp.position_m - volume_.FrameFromUnit(unit);
+    const double distance = std::max(glm::length(way), 1e-9);
+    SpectrumOf<double> column(1);
+    column[0] = volume_.Column(volume_.FrameFromUnit(unit), way / distance, distance);
+    return column;
+  };
+  VolumeLamp seen{lamp, intensity, Tabulated(size, sources_.bands(), depth_at), std::nullopt};
+  if (volume_.Samples()) seen.own_column = std::move(Tabulated(size, 1, column_at).front());
   return seen;
 }
 
 double LitVolume::ColumnToLamp(const VolumeLamp& seen, const glm::dvec3& point) const {
   if (seen.own_column) return seen.own_column->At(volume_.UnitFromFrame(point));
-  const glm::dvec3 way = sources_.lamps->At(seen.number).lamp.position_m - point;
+  const glm::dvec3 way = seen.lamp.position_m - point;
   const double distance = std::max(glm::length(way), 1e-9);
   return volume_.Column(point, way / distance, distance);
 }
@@ -226,13 +276,13 @@ std::vector<LampBeam> LitVolume::LampBeams(const glm::dvec3& point, std::size_t 
                                            double least_m) const {
   std::vector<LampBeam> beams;
   for (const VolumeLamp& seen : lamps_) {
-    const LampLight::SceneLamp lamp = sources_.lamps->At(seen.number);
-    const glm::dvec3 way = lamp.lamp.position_m - point;
-    const double distance = std::max({glm::length(way), lamp.lamp.radius_m, least_m});
-    const glm::dvec3 travel = -glm::normalize(way);
+    const glm::dvec3 way = seen.lamp.position_m - point;
+    const double length = std::max(glm::length(way), 1e-9);
+    const double distance = std::max({length, seen.lamp.radius_m, least_m});
+    const glm::dvec3 travel = way / -length;
     const double left = std::exp(-seen.depth[band].At(volume_.UnitFromFrame(point)));
-    const double per_area = RelativeIntensity(lamp.lamp, travel) / (distance * distance);
-    beams.push_back({travel, per_area * left * static_cast<double>(lamp.intensity[band]),
+    const double per_area = RelativeIntensity(seen.lamp, travel) / (distance * distance);
+    beams.push_back({travel, per_area * left * static_cast<double>(seen.intensity[band]),
                      ColumnToLamp(seen, point)});
   }
   return beams;
@@ -289,7 +339,7 @@ void LitVolume::AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_di
 void LitVolume::AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
                         std::vector<double>& cuts_m) const {
   for (const VolumeLamp& seen : lamps_) {
-    const Lamp& lamp = sources_.lamps->At(seen.number).lamp;
+    const Lamp& lamp = seen.lamp;
     const double nearest = glm::dot(lamp.position_m - origin, direction);
     const double across =
         std::max(glm::length(lamp.position_m - origin - nearest * direction), lamp.radius_m);
@@ -299,11 +349,10 @@ void LitVolume::AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
 
 void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& direction,
                         const LightOnPoint& light, double density, Spectrum& sum) const {
-  const LampLight::SceneLamp lamp = sources_.lamps->At(seen.number);
-  const glm::dvec3 way = lamp.lamp.position_m - light.point;
-  const double distance = std::max({glm::length(way), lamp.lamp.radius_m, 1e-3});
+  const glm::dvec3 way = seen.lamp.position_m - light.point;
+  const double distance = std::max({glm::length(way), seen.lamp.radius_m, 1e-3});
   const glm::dvec3 towards = way / distance;
-  const double per_area = density * RelativeIntensity(lamp.lamp, -towards) / (distance * distance);
+  const double per_area = density * RelativeIntensity(seen.lamp, -towards) / (distance * distance);
   if (per_area == 0.0) return;
   const glm::dvec3 unit = volume_.UnitFromFrame(light.point);
   const double own_m = ColumnToLamp(seen, light.point);
@@ -315,7 +364,7 @@ void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& direction,
         orders_ ? extinction_per_m_[band] *
                       orders_->FirstOfLamp(cos_scattering, band, own_m + light.column_to_eye_m)
                 : volume_.optics().scattering_per_m[band] * phase;
-    sum[band] += lamp.intensity[band] * static_cast<float>(per_area * scattered * std::exp(-depth));
+    sum[band] += seen.intensity[band] * static_cast<float>(per_area * scattered * std::exp(-depth));
   }
 }
 

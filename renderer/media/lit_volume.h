@@ -13,12 +13,13 @@
 //
 // The eight lamps of the scene that are brightest at a volume light it, through the air around lamps
 // and bodies (optical depths are from a grid of at most 24 samples per side), shadowed by terrain.
+// Other bodies that glow are lamps, too (body_glow.h), without air and terrain in between.
 //
 // With light of all orders a volume attenuates light without the forward peak of its phase function:
 // its own, that of wide sources behind it, and sunlight in its shadow.
 #pragma once
 
-#include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -49,18 +50,30 @@ class LitVolume final : public LitMedium {
 
  private:
   class OnOneRay;
-  /// A lamp that lights the volume.
+  /// A lamp or another body that glows and lights the volume.
   struct VolumeLamp {
-    std::uint32_t number;
+    Lamp lamp;
+    Spectrum intensity;                    // W sr^-1 nm^-1 in its brightest direction
     std::vector<VolumeGrid> depth;         // [band] of the path without the volume itself
     std::optional<VolumeGrid> own_column;  // of the path in a volume with Samples() [m]
   };
+  /// Returns the optical depth of the path from a point to a lamp without the volume.
+  using LampDepth = std::function<SpectrumOf<double>(const glm::dvec3& point)>;
 
   [[nodiscard]] SkyMoments Sky() const;
   [[nodiscard]] std::optional<VolumeGrid> SunColumns() const;
   [[nodiscard]] std::vector<VolumeGrid> SkyLeft(const SkyMoments& sky) const;
+  [[nodiscard]] std::vector<VolumeLamp> AllLamps() const;
   [[nodiscard]] std::vector<VolumeLamp> Lamps() const;
-  [[nodiscard]] VolumeLamp LampOf(std::uint32_t number) const;
+  /// Returns the bodies that glow brighter than a thousandth of the sunlight on the volume.
+  [[nodiscard]] std::vector<VolumeLamp> Glows() const;
+  [[nodiscard]] VolumeLamp LampOf(const Lamp& lamp, const Spectrum& intensity,
+                                  const LampDepth& depth) const;
+  /// Adds the optical depth of a medium other than the volume between a point and a lamp.
+  void AddOther(const LocalMedium& medium, const glm::dvec3& point, const glm::dvec3& lamp,
+                SpectrumOf<double>& depth) const;
+  /// Returns the distance of a lamp from the nearest point of the volume's box [m].
+  [[nodiscard]] double NearestTo(const Lamp& lamp) const;
   /// Returns the column of the volume between a point and a lamp [m].
   [[nodiscard]] double ColumnToLamp(const VolumeLamp& seen, const glm::dvec3& point) const;
   /// Returns the column of the volume between a point and the light [m].

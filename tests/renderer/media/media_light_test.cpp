@@ -321,6 +321,30 @@ TEST(MediaLight, LampsLightAVolumeLikeHomogeneousAir) {
   }
 }
 
+TEST(MediaLight, FireLightsItsSmokeAtNightAsALamp) {
+  MediaStage stage(tests::ThreeBandAir());
+  stage.light.source.direction = Unrefracted({0.0, 0.6, -0.8});
+  const auto smoke = Box({0.0, 300.0, 20.0}, {60.0, 60.0, 60.0}, Optics(0.02, 0.8));
+  const auto fire_of = [](double emission) {
+    return Box({0.0, 300.0, 10.0}, glm::dvec3(4.0), Optics(0.0, 0.0, emission));
+  };
+  const glm::dvec3 look(0.0, 1.0, 0.0);
+  const auto light = [&](const MediaList& media) {
+    return stage.Lit(media).Along(kMediaEye, look, INFINITY, nullptr).radiance;
+  };
+  const Spectrum dark = light({smoke}), lit = light({smoke, fire_of(1.0)});
+  const Spectrum brighter = light({fire_of(2.0), smoke});
+  // At first order smoke at the ray, 40 m over the fire, scatters E p by its depth of 1.2; a half of
+  // its light is taken on the way, at least, and light of higher orders is not more than that.
+  const double irradiance = 64.0 / (38.0 * 38.0);
+  for (std::size_t band = 0; band < 3; ++band) {
+    const double glow = static_cast<double>(lit[band] - dark[band]);
+    EXPECT_GT(glow, 0.05 * irradiance / (4.0 * kPi));
+    EXPECT_LT(glow, 2.0 * irradiance / (4.0 * kPi));
+    EXPECT_NEAR(static_cast<double>(brighter[band] - dark[band]) / glow, 2.0, 1e-3);
+  }
+}
+
 TEST(DimmedByMedia, LightIsDimmedByTheMediaInFrontOfIt) {
   // The slab has a transmittance of 0.3 between 100 and 200 m. Light grows as 1 - exp(-t / 500).
   const auto upto = [](double t) {

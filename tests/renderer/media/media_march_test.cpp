@@ -75,6 +75,19 @@ TEST(MarchMedia, AnExponentialSlabShinesWithOneMinusTransmittance) {
   }
 }
 
+TEST(MarchMedia, OnlyNarrowSourcesSufferAllExtinction) {
+  const LocalMedia slab({Body(Shape::kBox, {0.0, 50.0, -50.0}, {1e3, 10.0, 1e3}, 0.3)}, 1);
+  SpectrumOf<double> wide(1);
+  wide[0] = 0.1;
+  const std::vector<SpectrumOf<double>> extinction{wide};
+  const MarchedLight light = MarchMedia(slab, glm::dvec3(0.0), {0.0, 1.0, 0.0}, 1e4,
+                                        Glowing(slab, 7.0), kMarchTolerance, {}, extinction);
+  EXPECT_NEAR(static_cast<double>(light.narrow_transmittance[0]), std::exp(-3.0), 1e-6);
+  EXPECT_NEAR(static_cast<double>(light.transmittance[0]), std::exp(-1.0), 1e-6);
+  EXPECT_NEAR(static_cast<double>(light.radiance[0]), 3.0 * 7.0 * -std::expm1(-1.0), 1e-4)
+      << "the source is that of an extinction of 0.3, its attenuation that of 0.1";
+}
+
 TEST(MarchMedia, ThinBodyShinesAsItsSourceTimesItsLength) {
   const LocalMedia sphere({Body(Shape::kEllipsoid, {0.0, 90.0, -10.0}, glm::dvec3(20.0), 1e-7)}, 1);
   const MarchedLight light = MarchMedia(
