@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "renderer/media/media_march.h"
@@ -22,7 +23,7 @@ using tests::MakePlume;
 using tests::Plume;
 using tests::PlumeCase;
 
-constexpr double kCells = tests::ScaledDown(VolumeOrders::kMostCells, 1000.0);
+constexpr double kCells = tests::ScaledDown(VolumeOrders::kMostCells, 8192.0);
 
 MediumOptics SmokeOptics(double extinction_per_m, double albedo, double g) {
   MediumOptics optics{SpectrumOf<double>(1), SpectrumOf<double>(1), SpectrumOf<double>(1),
@@ -100,14 +101,19 @@ void ExpectPlumeErrors(const PlumeCase& of, int side, double most_rms) {
 }
 
 TEST(VolumeOrders, PlumesOfDepth10HaveTheLightOfTracedPaths) {
-  for (const auto& [albedo, g] : {std::pair{1.0, 0.85}, {0.8, 0.85}, {1.0, 0.7}})
-    ExpectPlumeErrors({10.0, albedo, g, tests::ScaledDown(64, 24)}, tests::ScaledDown(5, 3), 0.06);
+  const std::vector<std::pair<double, double>> optics{{0.8, 0.85}, {1.0, 0.85}, {1.0, 0.7}};
+  for (std::size_t i = 0; i < tests::ScaledDown(optics.size(), std::size_t{1}); ++i) {
+    const auto& [albedo, g] = optics[i];
+    ExpectPlumeErrors({10.0, albedo, g, tests::ScaledDown(64, 24)}, tests::ScaledDown(5, 2), 0.06);
+  }
 }
 
 TEST(VolumeOrders, PlumesOfDepth50HaveTheLightOfTracedPaths) {
-  for (const double albedo : {1.0, 0.8})
-    ExpectPlumeErrors({50.0, albedo, 0.85, tests::ScaledDown(64, 24)}, tests::ScaledDown(4, 2),
+  const std::vector<double> albedos{0.8, 1.0};
+  for (std::size_t i = 0; i < tests::ScaledDown(albedos.size(), std::size_t{1}); ++i) {
+    ExpectPlumeErrors({50.0, albedos[i], 0.85, tests::ScaledDown(64, 24)}, tests::ScaledDown(4, 2),
                       0.09);
+  }
 }
 
 TEST(VolumeOrders, WhiteBodiesInUniformLightAreInvisible) {
@@ -125,6 +131,27 @@ TEST(VolumeOrders, WhiteBodiesInUniformLightAreInvisible) {
           Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
       EXPECT_NEAR(light.radiance + light.transmittance, 1.0, 0.01)
           << g << ": the residual of the solution is 0.5 % of the light that enters";
+    }
+  }
+}
+
+TEST(VolumeOrders, SmallFlatAndDeepWhiteBodiesAreInvisible) {
+  const std::array<glm::dvec3, 3> sizes_m{glm::dvec3(0.01), glm::dvec3(2e5), {400.0, 400.0, 4.0}};
+  for (const glm::dvec3& size_m : sizes_m) {
+    for (const auto& [depth, g] : {std::pair{1e-6, 0.99}, {100.0, -0.3}, {100.0, 0.85}}) {
+      const LocalVolume ball = SmokeBall(SmokeOptics(depth / size_m.z, 1.0, g), size_m);
+      const VolumeOrders orders(ball,
+                                {.to_sun = kSunOverSmoke,
+                                 .sun_column_m = nullptr,
+                                 .sky = UniformSky(1.0F),
+                                 .lamps = nullptr,
+                                 .emits = false},
+                                512.0);
+      const CloudRay ray{{0.0, 0.0, 3.0 * size_m.z}, {0.0, 0.0, -1.0}};
+      const BodyLight light =
+          Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
+      EXPECT_NEAR(light.radiance + light.transmittance, 1.0, 0.01)
+          << size_m.x << ", " << depth << ", " << g << ": in uniform light, as above";
     }
   }
 }
