@@ -2,14 +2,15 @@
 // The light that a body (LocalBody), here also called a volume, scatters, and that it emits.
 //
 // By its ScatteringOrders it has the light of all orders (volume_orders.h), or that of the first
-// alone, as have volumes whose phase function is not of HasOrdersOf(). The first order has closed forms:
+// alone, as have volumes whose phase function is not of HasOrdersOf(). The first order has closed
+// forms.
 //
 // Sunlight arrives through the air (RefractedBeam), the terrain's shadow, and every medium on its
 // path. Skylight is given by its moments (MultipleScattering) and the phase function, and attenuated
 // by the mean transmittance of the bodies over 26 directions; light of all orders has its own sky,
-// which other bodies attenuate on the way to the middle of the volume. Columns towards the sun through a volume with Samples() are taken from a grid of at
-// most 64 samples per side; the error is 2 % of the sun's light in turbulent smoke with as many
-// samples itself.
+// which other bodies attenuate on the way to the middle of the volume. Columns towards the sun
+// through a volume with Samples() are taken from a grid of at most 64 samples per side; the error is
+// 2 % of the sun's light in turbulent smoke with as many samples itself.
 //
 // The eight lamps of the scene that are brightest at a volume light it, through the air around lamps
 // and bodies (optical depths are from a grid of at most 24 samples per side), shadowed by terrain.

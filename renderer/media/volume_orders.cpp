@@ -20,23 +20,23 @@ constexpr double kLeastPeak = 1e-6;
 // stands for those without one in the moments.
 constexpr double kNearlyIsotropic = 0.032;
 // Optical depth of a cell, without the forward peak, below which smaller cells change nothing.
-constexpr double kCellDepth = 0.3;
+constexpr double kVolumeCellDepth = 0.3;
 constexpr int kLeastCells = 6, kMostCellsAlong = 400;  // of the finest grid, along an axis
 constexpr int kMostSamplesPerSide = 4;
 constexpr double kY00 = 0.28209479177387814;  // 1 / sqrt(4 pi)
 
-double PeakFraction(const PhaseFunction& phase) {
+double PeakFractionOf(const PhaseFunction& phase) {
   return LegendreCoefficients(phase, kCloudDegree + 1).back();
 }
 
 /// Returns the phase function of the moments.
 PhaseFunction WithPeak(const PhaseFunction& phase) {
-  if (PeakFraction(phase) >= kLeastPeak) return phase;
+  if (PeakFractionOf(phase) >= kLeastPeak) return phase;
   return {.kind = PhaseKind::kHenyeyGreenstein, .g = kNearlyIsotropic};
 }
 
 /// Returns the number of cells of a grid along each axis of a box.
-std::array<int, 3> CountOf(const glm::dvec3& size_m, double side_m, int least) {
+std::array<int, 3> CellCountOf(const glm::dvec3& size_m, double side_m, int least) {
   std::array<int, 3> count{};
   for (int axis = 0; axis < 3; ++axis)
     count[static_cast<std::size_t>(axis)] =
@@ -56,7 +56,7 @@ int SamplesPerSide(const LocalBody& volume, double most_cells) {
 }  // namespace
 
 bool HasOrdersOf(const PhaseFunction& phase) {
-  return MeanCosine(phase) >= kLeastMeanCosine && PeakFraction(phase) < 1.0;
+  return MeanCosine(phase) >= kLeastMeanCosine && PeakFractionOf(phase) < 1.0;
 }
 
 VolumeOrders::VolumeOrders(const LocalBody& volume, const VolumeIllumination& light,
@@ -64,7 +64,7 @@ VolumeOrders::VolumeOrders(const LocalBody& volume, const VolumeIllumination& li
     : volume_(volume),
       frame_from_body_(volume.placement().across, volume.placement().ahead, volume.placement().up),
       to_sun_(light.to_sun),
-      has_peak_(PeakFraction(volume.optics().phase) >= kLeastPeak),
+      has_peak_(PeakFractionOf(volume.optics().phase) >= kLeastPeak),
       samples_per_side_(SamplesPerSide(volume, most_cells)) {
   const MediumOptics& optics = volume.optics();
   const std::size_t bands = optics.extinction_per_m.size();
@@ -121,10 +121,10 @@ std::vector<std::shared_ptr<const CloudCells>> VolumeOrders::Cells(double most_c
   for (std::size_t band = 0; band < optics_.size(); ++band)
     thickest_per_m = std::max(thickest_per_m, extinction_per_m_[band]);
   const double least_side_m = std::cbrt(size_m.x * size_m.y * size_m.z / most_cells);
-  const double side_m = std::max(least_side_m, kCellDepth / thickest_per_m);
+  const double side_m = std::max(least_side_m, kVolumeCellDepth / thickest_per_m);
   std::vector<std::shared_ptr<const CloudCells>> grids;
   for (const int times : {4, 2, 1}) {
-    CloudCellLattice lattice{CountOf(size_m, times * side_m, std::max(kLeastCells / times, 1)),
+    CloudCellLattice lattice{CellCountOf(size_m, times * side_m, std::max(kLeastCells / times, 1)),
                              glm::dvec3(-0.5 * size_m.x, -0.5 * size_m.y, 0.0), glm::dvec3(1.0)};
     for (int axis = 0; axis < 3; ++axis) {
       int& count = lattice.count[static_cast<std::size_t>(axis)];

@@ -23,7 +23,7 @@ using tests::MakePlume;
 using tests::Plume;
 using tests::PlumeCase;
 
-constexpr double kCells = tests::ScaledDown(VolumeOrders::kMostCells, 8192.0);
+constexpr double kVolumeCells = tests::ScaledDown(VolumeOrders::kMostCells, 8192.0);
 
 MediumOptics SmokeOptics(double extinction_per_m, double albedo, double g) {
   MediumOptics optics{SpectrumOf<double>(1), SpectrumOf<double>(1), SpectrumOf<double>(1),
@@ -58,9 +58,9 @@ struct BodyLight {
 };
 /// @param part  of the light, for example VolumeOrders::Scattered::sun.
 /// @param more  radiance of the body's own emission, per unit of scaled extinction.
-BodyLight Through(const LocalVolume& volume, const VolumeOrders& orders, const CloudRay& ray,
-                  const glm::dvec3& to_sun, Spectrum VolumeOrders::Scattered::*part,
-                  float more = 0.0F) {
+BodyLight LightThrough(const LocalVolume& volume, const VolumeOrders& orders, const CloudRay& ray,
+                       const glm::dvec3& to_sun, Spectrum VolumeOrders::Scattered::*part,
+                       float more = 0.0F) {
   const LocalMedia media({std::shared_ptr<const LocalMedium>(&volume, [](const LocalMedium*) {})},
                          1);
   const VolumeOrders::Look look = orders.LookAlong(ray.direction);
@@ -88,7 +88,7 @@ void ExpectPlumeErrors(const PlumeCase& of, int side, double most_rms) {
   const Plume plume = MakePlume(of);
   const glm::dvec3 to_sun = TowardsAzimuth(20.0, 35.0);
   const auto traced = tests::TracedPlume(plume, to_sun, 104, side);
-  const tests::PlumeOrders orders(plume, to_sun, kCells);
+  const tests::PlumeOrders orders(plume, to_sun, kVolumeCells);
   const tests::PlumeErrors all =
       tests::ErrorsOfPlume(traced, [&](const CloudRay& ray) { return orders.Along(ray); });
   const tests::PlumeErrors single =
@@ -125,10 +125,10 @@ TEST(VolumeOrders, WhiteBodiesInUniformLightAreInvisible) {
                                .sky = UniformSky(1.0F),
                                .lamps = nullptr,
                                .emits = false},
-                              kCells);
+                              kVolumeCells);
     for (const CloudRay& ray : kRaysThroughSmoke) {
       const BodyLight light =
-          Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
+          LightThrough(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
       EXPECT_NEAR(light.radiance + light.transmittance, 1.0, 0.01)
           << g << ": the residual of the solution is 0.5 % of the light that enters";
     }
@@ -149,7 +149,7 @@ TEST(VolumeOrders, SmallFlatAndDeepWhiteBodiesAreInvisible) {
                                 512.0);
       const CloudRay ray{{0.0, 0.0, 3.0 * size_m.z}, {0.0, 0.0, -1.0}};
       const BodyLight light =
-          Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
+          LightThrough(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
       EXPECT_NEAR(light.radiance + light.transmittance, 1.0, 0.01)
           << size_m.x << ", " << depth << ", " << g << ": in uniform light, as above";
     }
@@ -167,13 +167,13 @@ TEST(VolumeOrders, BodiesAsHotAsTheirSurroundingsAreInvisible) {
                              .sky = UniformSky(1.0F),
                              .lamps = nullptr,
                              .emits = true},
-                            kCells);
+                            kVolumeCells);
   const auto own = static_cast<float>(optics.emission_per_m[0] / orders.extinction_per_m()[0]);
   for (const CloudRay& ray : kRaysThroughSmoke) {
     const BodyLight of_sky =
-        Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
+        LightThrough(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
     const BodyLight hot =
-        Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::own, own);
+        LightThrough(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::own, own);
     EXPECT_NEAR(of_sky.radiance + hot.radiance + hot.transmittance, 1.0, 0.01);
     EXPECT_LT(of_sky.radiance + hot.transmittance, 0.8) << "smoke that does not glow is dark";
   }
@@ -193,12 +193,12 @@ TEST(VolumeOrders, AFarLampIsASun) {
                              .sky = nullptr,
                              .lamps = lamp,
                              .emits = false},
-                            kCells);
+                            kVolumeCells);
   for (const CloudRay& ray : kRaysThroughSmoke) {
     const double sun =
-        Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sun).radiance;
+        LightThrough(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sun).radiance;
     const double higher =
-        Through(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::own).radiance;
+        LightThrough(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::own).radiance;
     const glm::dvec3 middle(0.0, 0.0, 60.0);
     EXPECT_GT(higher, 0.1 * sun);
     EXPECT_LT(higher, sun) << "the sun has the first order, too";
@@ -230,7 +230,7 @@ TEST(VolumeOrders, ATurnedBodyHasTheSameLight) {
          .lamps = nullptr,
          .emits = false},
         1000.0);
-    return Through(ball, orders, ray, to_sun, &VolumeOrders::Scattered::sun).radiance;
+    return LightThrough(ball, orders, ray, to_sun, &VolumeOrders::Scattered::sun).radiance;
   };
   for (const CloudRay& ray : kRaysThroughSmoke) {
     const CloudRay other{turned(ray.origin), turned(ray.direction)};
