@@ -5,6 +5,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/axes_across.h"
+#include "atmosphere/math/constants.h"
+
 namespace alpenglow::renderer {
 
 DistantLight SunlightOf(const SunInSky& apparent, const Medium& medium) {
@@ -15,6 +19,15 @@ DistantLight SunlightOf(const SunInSky& apparent, const Medium& medium) {
                                               (apparent.distance_au * apparent.distance_au));
   }
   return sun;
+}
+
+glm::dvec3 TowardsDisk(const glm::dvec3& to_light, double radius_rad,
+                       std::array<double, 2> sample) {
+  const AxesAcross across = AxesAcrossOf(to_light);
+  const double rho = radius_rad * CircleOfLight(sample[0]);
+  const double angle = 2.0 * kPi * sample[1];
+  return glm::normalize(to_light +
+                        rho * (std::cos(angle) * across.side + std::sin(angle) * across.other));
 }
 
 LocalLight LocalLightAt(const SceneGeometry& geometry, const glm::dvec3& point,

@@ -13,6 +13,7 @@
 // is linear in the irradiance.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
 
@@ -51,6 +52,11 @@ struct LocalLight {
   double visible_fraction;  // of the disk above the planet's horizon
   double mu_s_effective;    // zenith cosine of the visible part
 };
+
+/// Returns a direction to a point of a light's disk, drawn from the limb-darkened distribution of its
+/// light. @param to_light  to its centre. @param sample  uniform in the unit square.
+[[nodiscard]] glm::dvec3 TowardsDisk(const glm::dvec3& to_light, double radius_rad,
+                                     std::array<double, 2> sample);
 
 [[nodiscard]] LocalLight LocalLightAt(const SceneGeometry& geometry, const glm::dvec3& point,
                                       const DistantLight& light);

@@ -13,19 +13,6 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// Returns a direction to a point of the light's disk, drawn from the limb-darkened distribution of
-/// its light.
-glm::dvec3 TowardsDisk(const DistantLight& light, std::array<double, 2> sample) {
-  const glm::dvec3& to_light = light.direction.seen;
-  glm::dvec3 across = glm::cross(to_light, glm::dvec3(0.3, -0.5, 0.8));
-  if (glm::dot(across, across) < 1e-6) across = glm::cross(to_light, glm::dvec3(1.0, 0.0, 0.0));
-  const glm::dvec3 side = glm::normalize(across);
-  const double rho = light.radius_rad * CircleOfLight(sample[0]);
-  const double angle = 2.0 * kPi * sample[1];
-  return glm::normalize(
-      to_light + rho * (std::cos(angle) * side + std::sin(angle) * glm::cross(to_light, side)));
-}
-
 // Returns whether terrain can stand between the ground at the hit and the sky.
 bool SeesTerrain(const Hit& hit, const Lighting& light) {
   return hit.kind == HitKind::kTerrain && light.on_terrain && light.on_terrain->horizons();
@@ -180,7 +167,8 @@ NaturalRadiance GroundLight::Natural(const SeenGround& seen, const GroundSources
   const Lighting& light = from.light;
   const LocalLight sun = LocalLightAt(seen.hit.point, light);
   NaturalRadiance sent{Spectrum(air_.bands())};
-  const glm::dvec3 to_disk = TowardsDisk(light.source, disk_sample);
+  const glm::dvec3 to_disk =
+      TowardsDisk(light.source.direction.seen, light.source.radius_rad, disk_sample);
   if (const auto direct = SunIrradiance(seen.hit, from, sun, to_disk)) {
     sent.radiance = seen.patch.Brdf(AnglesBetween(seen.hit.normal, to_disk, seen.to_eye)) * *direct;
     sent.disk_visibility = static_cast<float>(sun.visible_fraction);
@@ -219,7 +207,8 @@ PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSource
     sum.q = sum.q + degree * analyser.q * mirrored;
     sum.u = sum.u + degree * analyser.u * mirrored;
   };
-  const glm::dvec3 to_disk = TowardsDisk(light.source, disk_sample);
+  const glm::dvec3 to_disk =
+      TowardsDisk(light.source.direction.seen, light.source.radius_rad, disk_sample);
   if (const auto direct = SunIrradiance(seen.hit, from, sun, to_disk)) {
     const double glitter = seen.patch.Glitter(AnglesBetween(seen.hit.normal, to_disk, to_eye));
     add(to_disk, static_cast<float>(glitter) * *direct);

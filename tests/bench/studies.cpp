@@ -17,6 +17,7 @@ struct Study {
 };
 
 constexpr Study kStudies[] = {
+    {"caustic_error", CausticError},
     {"day_exposure", DayExposure},
     {"effects_error", EffectsError},
     {"exchange_error", ExchangeError},

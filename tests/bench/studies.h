@@ -6,6 +6,7 @@
 namespace alpenglow::tests {
 
 // arguments[0] is the name of the study. A study throws InputError if arguments are missing.
+void CausticError(int count, char** arguments);
 void DayExposure(int count, char** arguments);
 void EffectsError(int count, char** arguments);
 void ExchangeError(int count, char** arguments);
