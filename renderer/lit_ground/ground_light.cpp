@@ -78,7 +78,10 @@ double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const Local
       faces && parts_.ground.terrain && light.effects.Has(Effect::kShadows) &&
       parts_.ground.terrain->Occluded(hit.smooth_point, hit.geometric_normal, to_disk,
                                       std::numeric_limits<double>::infinity());
-  return faces && !occluded ? cosine : 0.0;
+  const bool behind_sphere = faces && parts_.spheres != nullptr &&
+                             light.effects.Has(Effect::kShadows) &&
+                             FirstSphereOn(*parts_.spheres, hit.smooth_point, to_disk).has_value();
+  return faces && !occluded && !behind_sphere ? cosine : 0.0;
 }
 
 Spectrum GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
@@ -140,12 +143,29 @@ std::optional<Spectrum> GroundLight::SunIrradiance(const Hit& hit, const GroundS
                                                    const glm::dvec3& to_disk) const {
   const double cosine = LitCosine(hit, from.light, sun, to_disk);
   if (cosine <= 0.0) return std::nullopt;
+  return BeamThrough(hit.point, from, sun, to_disk, cosine);
+}
+
+std::optional<Spectrum> GroundLight::InAir(const glm::dvec3& point,
+                                           const GroundSources& from) const {
+  const glm::dvec3& to_light = from.light.source.direction.seen;
+  const LocalLight sun = LocalLightAt(point, from.light);
+  const bool is_occluded = parts_.ground.terrain && from.light.effects.Has(Effect::kShadows) &&
+                           parts_.ground.terrain->Occluded(point, to_light, to_light,
+                                                           std::numeric_limits<double>::infinity());
+  if (is_occluded || sun.visible_fraction <= 0.0) return std::nullopt;
+  return BeamThrough(point, from, sun, to_light, 1.0);
+}
+
+Spectrum GroundLight::BeamThrough(const glm::dvec3& point, const GroundSources& from,
+                                  const LocalLight& sun, const glm::dvec3& to_disk,
+                                  double cosine) const {
   const bool is_shaded = from.clouds != nullptr && from.light.effects.Has(Effect::kCloudShadows);
-  const double past_clouds = is_shaded ? from.clouds->shadow().Transmittance(hit.point) : 1.0;
+  const double past_clouds = is_shaded ? from.clouds->shadow().Transmittance(point) : 1.0;
   const Spectrum clear = static_cast<float>(sun.visible_fraction * cosine * past_clouds) *
                          air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   if (from.media == nullptr) return clear;
-  return clear * from.media->BeamLeft(hit.point, to_disk);
+  return clear * from.media->BeamLeft(point, to_disk);
 }
 
 SeenGround GroundLight::SeenFrom(const Hit& hit, const glm::dvec3& to_eye,

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "lut/multiple_scattering/polarised_scattering.h"
 #include "lut/multiple_scattering/solved_air.h"
@@ -15,6 +16,7 @@
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/lit_clouds/lit_clouds.h"
 #include "renderer/media/media_light.h"
+#include "renderer/specular/specular_sphere.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/surface.h"
 
@@ -42,6 +44,7 @@ struct GroundParts {
   const LampLight& lamps;
   const HorizonsOnDemand& horizons;
   const GroundMaterial& material;
+  const std::vector<SpecularSphere>* spheres = nullptr;  // they cast shadows; null: none
 };
 
 /// Light sources of the ground.
@@ -84,6 +87,11 @@ class GroundLight {
                                          const ViewAxes& axes,
                                          std::array<double, 2> disk_sample) const;
 
+  /// Returns the irradiance of a light on a surface that faces it, at a point above the ground, per
+  /// irradiance above the air [1]; no value in the shade. Spheres cast no shadow on it.
+  [[nodiscard]] std::optional<Spectrum> InAir(const glm::dvec3& point,
+                                              const GroundSources& from) const;
+
   [[nodiscard]] LocalLight LocalLightAt(const glm::dvec3& point, const Lighting& light) const;
 
  private:
@@ -96,6 +104,11 @@ class GroundLight {
   [[nodiscard]] std::optional<Spectrum> SunIrradiance(const Hit& hit, const GroundSources& from,
                                                       const LocalLight& sun,
                                                       const glm::dvec3& to_disk) const;
+  /// Returns `cosine` times the transmittance of air, clouds and media for the visible part of the
+  /// light's disk.
+  [[nodiscard]] Spectrum BeamThrough(const glm::dvec3& point, const GroundSources& from,
+                                     const LocalLight& sun, const glm::dvec3& to_disk,
+                                     double cosine) const;
   [[nodiscard]] Spectrum SkyIrradiance(const Hit& hit, const GroundSources& from,
                                        const LocalLight& sun) const;
   /// Returns the radiance that a slope sends to other slopes, per unit solar irradiance [1/sr].

@@ -23,6 +23,7 @@ std::vector<std::string> UntracedContent(const Scene& scene) {
   add(!scene.lights.empty(), "lamps (light)");
   add(!scene.layers.empty(), "fog (fog)");
   add(!scene.volumes.empty(), "local media (volume)");
+  add(!scene.objects.empty(), "spheres of glass and mirrors (object)");
   add(!IsLambertian(scene.ground.kind), "ground that is not Lambertian (ground.cover)");
   add(scene.ground.sea_level_m.has_value(), "a sea (ground.sea_level_m)");
   add(!scene.terrain.land_cover.empty(), "land cover (terrain.land_cover)");

@@ -100,6 +100,7 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
   LightNight();
   LightMedia();
   LightClouds();
+  LightSpheres();
   LightTerrain();
   if (settings_.paths) AddPaths();
   if (Has(Effect::kStars)) AddStars(observer);
@@ -174,6 +175,37 @@ void FrameContext::LightClouds() {
     source.clouds = std::make_shared<const LitClouds>(
         scene_->clouds().At(instant_, light.direction.seen), scene_->geometry(), over_ground_->air,
         light, settings_.cloud_light, PixelRaysOf(camera(), geometry(), settings_));
+  }
+}
+
+void FrameContext::LightSpheres() {
+  for (FrameLight& source : lights_) source.caustics = nullptr;
+  const std::vector<SpecularSphere>& spheres = scene_->spheres();
+  if (spheres.empty()) return;
+  double photons = 0.0;
+  for (const SceneObject& object : scene_->scene().objects) photons += object.photons;
+  for (FrameLight& source : lights_) {
+    if (!source.media || !source.light.shows) continue;
+    const DistantLight& light = source.light.source;
+    const auto lit = [&](const SpecularSphere& sphere) {
+      return over_ground_->ground_light.InAir(sphere.centre, source.ground_sources());
+    };
+    std::optional<Spectrum> left;
+    for (const SpecularSphere& sphere : spheres) {
+      left = lit(sphere);
+      if (left) break;
+    }
+    if (!left) continue;
+    Prepare(settings_.progress, "caustics");
+    source.caustics = std::make_shared<const Caustics>(
+        SphereSurroundings{spheres,
+                           geometry(),
+                           {light.direction.seen, light.radius_rad},
+                           light.irradiance * *left,
+                           static_cast<int>(std::min(photons, kMostPhotons)),
+                           camera().eye(),
+                           camera().PixelAngle()},
+        source.media->media());
   }
 }
 
@@ -254,6 +286,7 @@ FrameContext FrameContext::Reduced(EffectSet effects) const {
   if (!effects.Has(Effect::kLights)) frame.plan_ = std::make_shared<LampPlan>();
   if (!are_alike(kThatLightMedia)) frame.LightMedia();
   frame.LightClouds();
+  if (!are_alike(kThatLightMedia)) frame.LightSpheres();
   if (!are_alike(kThatLightTerrain)) frame.LightTerrain();
   frame.AddSmallDisks();
   return frame;

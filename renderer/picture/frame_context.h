@@ -20,6 +20,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/picture/scene_lighting.h"
 #include "renderer/picture/small_disk.h"
+#include "renderer/picture/sphere_light.h"
 #include "renderer/picture/star_pixels.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/terrain_sunlight.h"
@@ -34,6 +35,7 @@ struct FrameLight {
   std::shared_ptr<const MediaLight> media;         // null: no bodies, and only lamps light layers
   std::shared_ptr<const LitClouds> clouds = nullptr;       // null: none
   std::shared_ptr<const ScenePathTracer> paths = nullptr;  // null: the fast method
+  std::shared_ptr<const Caustics> caustics = nullptr;      // of spheres in media; null: none
 
   /// Returns the shadow of clouds; null: none.
   [[nodiscard]] const CloudShadow* cloud_shadow() const {
@@ -100,6 +102,8 @@ class FrameContext {
   void LightNight();
   void LightMedia();
   void LightClouds();
+  /// Follows the light of spheres into media.
+  void LightSpheres();
   /// Computes the terrain's illumination by all lights.
   void LightTerrain();
   /// Prepares the paths of all lights, if the settings have paths.

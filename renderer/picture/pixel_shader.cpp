@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "atmosphere/math/constants.h"
 #include "renderer/illumination/polarised_axes.h"
@@ -29,12 +31,32 @@ Shaded Polarised(const CameraRays& camera, const glm::dvec3& direction,
   return shaded;
 }
 
+/// Returns the hit of a sphere that is in front of another hit; else that one.
+Hit OrOnSphere(const std::vector<SpecularSphere>& spheres, const CameraRay& ray, const Hit& hit,
+               double pixel_rad) {
+  const std::optional<EnteredSphere> entered = FirstSphereOn(spheres, ray.origin, ray.direction);
+  if (!entered || entered->distance_m >= hit.distance_m) return hit;
+  const glm::dvec3 point = ray.origin + entered->distance_m * ray.direction;
+  const glm::dvec3 normal = glm::normalize(point - spheres[entered->number].centre);
+  return {HitKind::kSphere,
+          entered->distance_m,
+          normal,
+          normal,
+          normal,
+          point,
+          point,
+          entered->distance_m * pixel_rad};
+}
+
 }  // namespace
 
 Hit PixelShader::Trace(const CameraRay& ray, double expected_m) const {
   const RefractedViewRays* bent = frame_->bent();
-  if (bent && bent->moves_ground) return OnRefractedRay(*frame_, ray, expected_m);
-  return frame_->geometry().Trace(ray.origin, ray.direction, frame_->camera().PixelAngle());
+  const Hit hit =
+      bent && bent->moves_ground
+          ? OnRefractedRay(*frame_, ray, expected_m)
+          : frame_->geometry().Trace(ray.origin, ray.direction, frame_->camera().PixelAngle());
+  return OrOnSphere(frame_->scene().spheres(), ray, hit, frame_->camera().PixelAngle());
 }
 
 std::optional<Spectrum> PixelShader::LeftOfSpace(double x, double y) const {
@@ -91,12 +113,12 @@ PolarisedLight PixelShader::PolarisedGround(const Hit& hit, const CameraRay& ray
 Shaded PixelShader::Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
                           const LampTile& near, std::array<double, 2> disk_sample,
                           const Spectrum* traced) const {
-  Shaded shaded = WithoutPolariser(hit, through, ray, near, disk_sample, traced);
+  Shaded shaded = WithoutPolariser(hit, through, ray, near, disk_sample, traced, 0);
   if (!frame_->IsPolarised()) return shaded;
   const PolarisedLight inscatter =
       (through.layers_left * frame_->light().source.irradiance) * *through.air.polarised;
   shaded.polarised = inscatter;
-  if (hit.kind != HitKind::kSky) {
+  if (hit.kind != HitKind::kSky && hit.kind != HitKind::kSphere) {
     shaded.polarised = inscatter + shaded.transmittance * PolarisedGround(hit, ray, disk_sample);
   }
   return Polarised(frame_->camera(), ray.through, inscatter, std::move(shaded));
@@ -104,8 +126,8 @@ Shaded PixelShader::Shade(const Hit& hit, const SharedSegmentAir& through, const
 
 Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
                                      const CameraRay& ray, const LampTile& near,
-                                     std::array<double, 2> disk_sample,
-                                     const Spectrum* traced) const {
+                                     std::array<double, 2> disk_sample, const Spectrum* traced,
+                                     int spheres) const {
   const FrameContext& frame = *frame_;
   const NightLight* night = frame.sky_lights().night.get();
   Shaded shaded;
@@ -120,7 +142,7 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   };
   shaded.lamps =
       through.lamp_light + frame.lamps().Seen(near.seen, ray, frame_->camera().PixelAngle(), left);
-  shaded.volumes = through.media;
+  shaded.volumes = through.media + CausticsAlong(ray, hit.distance_m);
   shaded.clouds = through.layers_left * through.cloud_light;
   shaded.cloud_transmittance = through.clouds.transmittance();
   shaded.cloud_distance_m = through.clouds.WeightedDistance_m();
@@ -138,10 +160,51 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
           shaded.radiance + disk_left * MoonDiskRadiance(frame, ray.direction, through.air);
     if (night)
       shaded.radiance = shaded.radiance + shaded.transmittance * night->Above(ray.direction);
+  } else if (hit.kind == HitKind::kSphere) {
+    AddSphere(ray, near, disk_sample, spheres, shaded);
   } else {
     AddGround(hit, ray, near, disk_sample, traced == nullptr, shaded);
   }
   return shaded;
+}
+
+Spectrum PixelShader::CausticsAlong(const CameraRay& ray, double length_m) const {
+  Spectrum light(frame_->scene().medium().wavelengths_nm.size());
+  for (const FrameLight& source : frame_->lights()) {
+    if (source.caustics)
+      light = light + source.caustics->Along(ray.origin, ray.direction, length_m);
+  }
+  return light;
+}
+
+void PixelShader::AddSphere(const CameraRay& ray, const LampTile& near,
+                            std::array<double, 2> disk_sample, int spheres, Shaded& shaded) const {
+  // Weaker orders, and light that has met more spheres, are left out.
+  constexpr double kLeastShare = 2e-3;
+  constexpr int kMostOrder = 3, kMostSpheres = 4;
+  const FrameContext& frame = *frame_;
+  const std::vector<SpecularSphere>& all = frame.scene().spheres();
+  const std::optional<EnteredSphere> entered = FirstSphereOn(all, ray.origin, ray.direction);
+  if (!entered || spheres >= kMostSpheres) return;
+  const DividedRay divided(all[entered->number], ray.origin + entered->distance_m * ray.direction,
+                           ray.direction);
+  for (int order = 0; order <= kMostOrder; ++order) {
+    const double share = divided.Share(order);
+    if (share < kLeastShare) continue;
+    const LeavingRay leaving = divided.Leaving(order);
+    const CameraRay next{leaving.origin, leaving.origin, leaving.direction, leaving.direction};
+    const Hit behind = OrOnSphere(
+        all, next, frame.geometry().Trace(next.origin, next.direction, frame.camera().PixelAngle()),
+        frame.camera().PixelAngle());
+    SharedSegmentAir air = SharedSegmentAir::Of(behind, next.direction, frame);
+    AddAir(frame, air);
+    air.layers_left = UnmarchedLayers(frame, next.direction, air.length_m());
+    air.lamp_light = air.night = Spectrum(air.media.size());
+    const Shaded seen =
+        WithoutPolariser(behind, air, next, near, disk_sample, nullptr, spheres + 1);
+    shaded.radiance =
+        shaded.radiance + static_cast<float>(share) * (shaded.transmittance * seen.radiance);
+  }
 }
 
 Spectrum PixelShader::OnePath(const CameraRay& ray,

@@ -50,10 +50,17 @@ class PixelShader {
                                   const AirAlongRay& through);
   [[nodiscard]] Spectrum DiskFrom(const glm::dvec3& direction, DiskBehind disk) const;
   /// Computes Shade() without a polariser and without Shaded::polarised.
+  /// @param spheres  number of spheres that the ray has met before.
   [[nodiscard]] Shaded WithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
                                         const CameraRay& ray, const LampTile& near,
-                                        std::array<double, 2> disk_sample,
-                                        const Spectrum* traced) const;
+                                        std::array<double, 2> disk_sample, const Spectrum* traced,
+                                        int spheres) const;
+  /// Adds the light that arrives through a sphere of glass or from a mirror. @param spheres  number of
+  /// spheres that the ray has met before.
+  void AddSphere(const CameraRay& ray, const LampTile& near, std::array<double, 2> disk_sample,
+                 int spheres, Shaded& shaded) const;
+  /// Returns the light of caustics in media along a ray.
+  [[nodiscard]] Spectrum CausticsAlong(const CameraRay& ray, double length_m) const;
   /// Adds the light that the ground sends towards the eye.
   /// @param has_natural  whether it includes that of sun and moon.
   void AddGround(const Hit& hit, const CameraRay& ray, const LampTile& near,

@@ -10,6 +10,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/illumination/night_light.h"
+#include "renderer/picture/sphere_light.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -72,6 +73,7 @@ PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<const SceneGrou
       colour_(medium_.wavelengths_nm),
       lamps_(scene_, *ground_, medium_, colour_),
       media_(scene_, *ground_, medium_),
+      spheres_(SpheresOf(scene_, *ground_)),
       geometry_(*ground_, medium_, scene_.terrain.HasFineRelief(), pattern_eye),
       smooth_geometry_(*ground_, medium_, false, pattern_eye),
       horizons_(other ? other->horizons_ : std::make_shared<HorizonsOnDemand>(*ground_, medium_)),
@@ -83,7 +85,7 @@ PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<const SceneGrou
                                                      medium_.planet_radius_m)),
       material_(scene_.ground, ColourDrape::Of(scene_, *ground_), medium_.wavelengths_nm),
       terrain_message_(MessageOf(*ground_, material_)),
-      air_(medium_, {*ground_, geometry_, lamps_, *horizons_, material_}),
+      air_(medium_, {*ground_, geometry_, lamps_, *horizons_, material_, &spheres_}),
       towns_(SkyglowOf(scene_, *ground_, air_, colour_)),
       pattern_origin_(PatternOrigin(pattern_eye)) {}
 

@@ -26,6 +26,7 @@
 #include "renderer/media/local_media.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
+#include "renderer/specular/specular_sphere.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
@@ -114,6 +115,8 @@ class PreparedScene {
   [[nodiscard]] const BandColour& colour() const { return colour_; }
   [[nodiscard]] const LampLight& lamps() const { return lamps_; }
   [[nodiscard]] const LocalMedia& media() const { return media_; }
+  /// Returns the spheres of glass and mirrors, in the frame of the ground.
+  [[nodiscard]] const std::vector<SpecularSphere>& spheres() const { return spheres_; }
   [[nodiscard]] CloudsByTime& clouds() const { return *clouds_; }
   [[nodiscard]] const SceneGeometry& geometry() const { return geometry_; }
   /// Returns the geometry with fine relief only if the effects include it.
@@ -153,6 +156,7 @@ class PreparedScene {
   BandColour colour_;
   LampLight lamps_;
   LocalMedia media_;
+  std::vector<SpecularSphere> spheres_;
   SceneGeometry geometry_, smooth_geometry_;
   std::shared_ptr<const HorizonsOnDemand> horizons_;
   std::shared_ptr<RecentSunlight> sunlight_, moonlight_;

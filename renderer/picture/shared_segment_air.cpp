@@ -341,7 +341,7 @@ void SharedSegmentAir::Add(const Hit& hit, const glm::dvec3& direction) {
 
 bool SharedSegmentAir::MayLookAlong(const glm::dvec3& direction, const FrameContext& frame) const {
   constexpr double kSameCosine = 0.02;
-  if (kind == HitKind::kTerrain) return true;
+  if (kind == HitKind::kTerrain || kind == HitKind::kSphere) return true;
   if (kind == HitKind::kSky) return !is_alone && !frame.limb().IsSteepAt(direction);
   return std::abs(frame.limb().GroundCosine(direction) - first_cosine) <=
          kSameCosine * first_cosine;

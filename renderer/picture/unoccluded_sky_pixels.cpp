@@ -26,8 +26,8 @@ UnoccludedSkyPixels::UnoccludedSkyPixels(const PixelShader& shader)
   const CameraRays& camera = frame_.camera();
   const PreparedScene& scene = frame_.scene();
   const bool is_solid = scene.ground().is_solid || !scene.geometry().HasTerrain();
-  if (!frame_.settings().skips_open_sky || !is_solid || camera.HasLens() ||
-      frame_.moving().IsMoving())
+  if (!frame_.settings().skips_open_sky || !is_solid || !scene.spheres().empty() ||
+      camera.HasLens() || frame_.moving().IsMoving())
     return;
   const glm::dvec3 up = scene.geometry().UpAt(camera.eye());
   const auto sees_sky = [&](const glm::dvec3& direction) {

@@ -18,8 +18,8 @@ class PixelShader;
 /// Immutable, safe to share between threads. Refers to the frame.
 class UnoccludedSkyPixels {
  public:
-  /// No pixel counts as open sky where sky can be visible below ground, a lens blurs, or the camera
-  /// moves.
+  /// No pixel counts as open sky where sky can be visible below ground, a lens blurs, the camera
+  /// moves, or the scene has spheres.
   explicit UnoccludedSkyPixels(const PixelShader& shader);
 
   /// Returns whether all rays that count for a pixel see only sky, without a disk in it.

@@ -431,6 +431,23 @@ Volume VolumeOf(const TomlTable& entry, const fs::path& folder, std::size_t band
   return volume;
 }
 
+/// @param name  in messages.
+SceneObject ObjectOf(const TomlTable& entry, const std::string& name) {
+  const TomlSection table(entry, ObjectFields().Keys());
+  for (const char* key : {"latitude", "longitude"}) Require(table, key);
+  SceneObject object;
+  object.name = name;
+  ObjectFields().Read(table, object);
+  object.height = HeightOf(table, object.height);
+  if (object.material == SphereMaterial::kMirror)
+    RefuseKeys(table, {"index"}, "is for glass; this is a mirror");
+  if (object.photons != std::floor(object.photons)) {
+    table.Fail("photons", fmt::format("{} is {}; it must be a whole number",
+                                      table.FullName("photons"), object.photons));
+  }
+  return object;
+}
+
 /// Refuses values of a cloud that their ranges alone allow.
 void CheckCloudKeys(const TomlSection& table) {
   const std::optional<double> seed = table.Number("seed");
@@ -654,6 +671,10 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
   scene.town_zenith = TownZenithOf(document);
   for (const TomlTable& volume : document.Tables(VolumeFields().name)) {
     scene.volumes.push_back(VolumeOf(volume, folder, scene.medium.wavelengths_nm.size()));
+  }
+  for (const TomlTable& object : document.Tables(ObjectFields().name)) {
+    scene.objects.push_back(
+        ObjectOf(object, fmt::format("{}: object[{}]", origin, scene.objects.size())));
   }
   scene.clouds = CloudsOf(document, folder, origin);
   return scene;

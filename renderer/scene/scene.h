@@ -18,6 +18,7 @@
 #include "renderer/elevation/elevation.h"
 #include "renderer/elevation/mesh.h"
 #include "renderer/scene/cloud_file.h"
+#include "renderer/scene/sphere_material.h"
 #include "renderer/scene/volume_grid.h"
 
 namespace alpenglow::renderer {
@@ -164,6 +165,17 @@ struct Volume {
   ScatteringOrders orders = ScatteringOrders::kAll;
 };
 
+/// A sphere of glass or a mirror, see SpecularSphere.
+struct SceneObject {
+  std::string name;          // in messages: "scene.toml: object[0]"
+  Place place;               // with height 0
+  Height height{0.0, true};  // of its underside
+  double radius_m = 1.0;
+  SphereMaterial material = SphereMaterial::kGlass;
+  double index = 1.5;         // of refraction, of glass
+  double photons = 100000.0;  // for its light in media; a whole number
+};
+
 /// A layer of clouds over the whole scene, or a field of others; see CloudFieldsOf.
 struct SceneCloud {
   std::string name;            // in messages: "scene.toml: cloud[0]"
@@ -189,6 +201,7 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<MediumLayer> layers;  // at most one
   std::vector<Volume> volumes;
+  std::vector<SceneObject> objects;
   std::vector<SceneCloud> clouds;
   /// Day (UTC, modified Julian) from which clouds count their time; empty: that of `time`. See
   /// CloudTime_s.

@@ -29,6 +29,11 @@ constexpr EnumNames kVolumeShapes{{std::pair{VolumePlacement::Shape::kBox, "box"
 constexpr EnumNames kScatteringOrders{
     {std::pair{ScatteringOrders::kAll, "all"}, {ScatteringOrders::kSingle, "single"}}};
 
+constexpr EnumNames kSphereMaterials{
+    {std::pair{SphereMaterial::kGlass, "glass"}, {SphereMaterial::kMirror, "mirror"}}};
+
+const std::vector<std::string> kObjectShapes{"sphere"};
+
 constexpr std::pair kLatitudes{-90.0, 90.0};
 constexpr std::pair kLongitudes{-180.0, 360.0};
 constexpr std::pair kHeadings{-360.0, 360.0};
@@ -343,6 +348,33 @@ const TomlFields<Volume>& VolumeFields() {
        {"orders", Name(&Volume::orders, kScatteringOrders, OneOfQuoted), "", "",
         "of scattering; all: see Limits", "\"all\""}},
       "smoke, a bank of fog, a glowing gas; any number",
+      /*is_list=*/true};
+  return fields;
+}
+
+const TomlFields<SceneObject>& ObjectFields() {
+  static const TomlFields<SceneObject> fields{
+      "object",
+      {{"shape",
+        {{.names = kObjectShapes, .expected = OneOfQuoted(kObjectShapes)}},
+        "",
+        "",
+        "",
+        "\"sphere\""},
+       {"latitude", Number(&SceneObject::place, &Place::latitude_deg, kLatitudes), "degrees north",
+        "required", "", "46.501"},
+       {"longitude", Number(&SceneObject::place, &Place::longitude_deg, kLongitudes),
+        "degrees east", "required", "", "8.0"},
+       HeightRow<SceneObject>("# 700.0"),
+       AboveGroundRow<SceneObject>("of its underside", "0.0"),
+       {"radius_m", Number(&SceneObject::radius_m, {0.01, 1000.0}), "m", "", "", "1.0"},
+       {"material", Name(&SceneObject::material, kSphereMaterials, OneOfQuoted), "", "", "",
+        "\"glass\""},
+       {"index", Number(&SceneObject::index, {kLeastRefractiveIndex, kMostRefractiveIndex}), "", "",
+        "of refraction, of glass", "1.5"},
+       {"photons", Number(&SceneObject::photons, {1.0, 1e7}), "", "",
+        "a whole number: for the light that the object sends into fog and volumes", "100000"}},
+      "a sphere of glass or a mirror; any number",
       /*is_list=*/true};
   return fields;
 }

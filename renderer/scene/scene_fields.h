@@ -22,6 +22,7 @@ namespace alpenglow::renderer {
 [[nodiscard]] const TomlFields<MediumLayer>& LayerFields();
 [[nodiscard]] const TomlFields<Scene>& NightFields();
 [[nodiscard]] const TomlFields<Volume>& VolumeFields();
+[[nodiscard]] const TomlFields<SceneObject>& ObjectFields();
 [[nodiscard]] const TomlFields<SceneCloud>& CloudFields();
 
 /// Returns the type of a lamp as the file names it.
@@ -42,6 +43,7 @@ void ForEachTable(const Use& use) {
   use(LightFields(), [](auto& scene) { return std::span(scene.lights); });
   use(LayerFields(), [](auto& scene) { return std::span(scene.layers); });
   use(VolumeFields(), [](auto& scene) { return std::span(scene.volumes); });
+  use(ObjectFields(), [](auto& scene) { return std::span(scene.objects); });
   use(CloudFields(), [](auto& scene) { return std::span(scene.clouds); });
   use(NightFields(), whole);
 }

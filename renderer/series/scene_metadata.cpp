@@ -237,6 +237,14 @@ Metadata RecordOf(const TomlFields<Volume>& fields, const Volume& volume, std::s
   return {{fmt::format("alpenglow.volume_{}_hash", number), Fingerprint(values)}};
 }
 
+Metadata RecordOf(const TomlFields<SceneObject>& fields, const SceneObject& object,
+                  std::size_t number, const FileHashes& /*hashes*/) {
+  std::string text = "underside " + HeightText(object.height);
+  for (const auto& [key, value] : ValuesOf(fields, object))
+    text += fmt::format(", {} {}", key, value);
+  return {{fmt::format("alpenglow.object_{}", number), text}};
+}
+
 Metadata RecordOf(const TomlFields<SceneCloud>& fields, const SceneCloud& cloud, std::size_t number,
                   const FileHashes& hashes) {
   std::string text;

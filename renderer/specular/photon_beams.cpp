@@ -47,22 +47,6 @@ struct PhotonNumbers {
   }
 };
 
-/// A sphere that a ray enters.
-struct EnteredSphere {
-  std::size_t number;
-  double distance_m;
-};
-
-std::optional<EnteredSphere> FirstOn(std::span<const SpecularSphere> spheres,
-                                     const glm::dvec3& origin, const glm::dvec3& direction) {
-  std::optional<EnteredSphere> first;
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    const std::optional<double> distance_m = DistanceTo(spheres[i], origin, direction);
-    if (distance_m && (!first || *distance_m < first->distance_m)) first = {i, *distance_m};
-  }
-  return first;
-}
-
 /// The photons of one sphere.
 struct PhotonsOfSphere {
   std::size_t sphere;
@@ -108,7 +92,7 @@ class PhotonFollower {
     const double rho = sphere.radius_m * std::sqrt(numbers[0]), angle = 2.0 * kPi * numbers[1];
     glm::dvec3 origin = sphere.centre - before_m_ * direction +
                         rho * (std::cos(angle) * across.side + std::sin(angle) * across.other);
-    std::optional<EnteredSphere> met = FirstOn(spheres_, origin, direction);
+    std::optional<EnteredSphere> met = FirstSphereOn(spheres_, origin, direction);
     if (!met || met->number != part.sphere) return;
     const double area_m2 = kPi * sphere.radius_m * sphere.radius_m / part.count;
     for (std::size_t leg = 0; leg < kMostLegs && met; ++leg) {
@@ -119,7 +103,7 @@ class PhotonFollower {
       const LeavingRay leaving = divided.Leaving(*order);
       origin = leaving.origin;
       direction = leaving.direction;
-      met = FirstOn(spheres_, origin, direction);
+      met = FirstSphereOn(spheres_, origin, direction);
       const double end_m = std::min(end_(origin, direction), options_.longest_m);
       if (met && met->distance_m > end_m) met.reset();
       const double length_m = met ? met->distance_m : end_m;
@@ -140,7 +124,7 @@ class PhotonFollower {
 std::vector<PhotonBeam> FollowPhotons(std::span<const SpecularSphere> spheres,
                                       const DiskOfLight& light, const PhotonOptions& options,
                                       const DistanceToEnd& end) {
-  RequireInRange(options.photons, 1.0, 1e7, "the number of photons");
+  RequireInRange(options.photons, 1.0, kMostPhotons, "the number of photons");
   RequireInRange(options.longest_m, std::numeric_limits<double>::min(),
                  std::numeric_limits<double>::max(), "the longest beam [m]");
   for (const SpecularSphere& sphere : spheres) Validate(sphere);

@@ -39,6 +39,8 @@ struct PhotonBeam {
   int leg;
 };
 
+inline constexpr double kMostPhotons = 1e7;
+
 struct PhotonOptions {
   int photons = 100000;    // in [1, 1e7]
   std::uint64_t seed = 1;  // of the shift of the sequence

@@ -35,6 +35,16 @@ std::optional<double> DistanceTo(const SpecularSphere& sphere, const glm::dvec3&
   return entry_m;
 }
 
+std::optional<EnteredSphere> FirstSphereOn(std::span<const SpecularSphere> spheres,
+                                           const glm::dvec3& origin, const glm::dvec3& direction) {
+  std::optional<EnteredSphere> first;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const std::optional<double> distance_m = DistanceTo(spheres[i], origin, direction);
+    if (distance_m && (!first || *distance_m < first->distance_m)) first = {i, *distance_m};
+  }
+  return first;
+}
+
 DividedRay::DividedRay(const SpecularSphere& sphere, const glm::dvec3& point,
                        const glm::dvec3& direction)
     : sphere_(&sphere) {

@@ -18,14 +18,15 @@
 // does not interfere. A mirror has order 0 only, with power 1.
 #pragma once
 
+#include <cstddef>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 
 #include "renderer/layer.h"
+#include "renderer/scene/sphere_material.h"
 
 namespace alpenglow::renderer {
-
-enum class SphereMaterial { kGlass, kMirror };
 
 struct SpecularSphere {
   glm::dvec3 centre{0.0};
@@ -33,8 +34,6 @@ struct SpecularSphere {
   SphereMaterial material = SphereMaterial::kGlass;
   double index = 1.5;  // of refraction, relative to air; a mirror has none
 };
-
-inline constexpr double kLeastRefractiveIndex = 1.0, kMostRefractiveIndex = 4.0;
 
 /// Throws InputError unless the radius is positive and finite, and the index in [1, 4].
 void Validate(const SpecularSphere& sphere);
@@ -44,6 +43,17 @@ void Validate(const SpecularSphere& sphere);
 [[nodiscard]] std::optional<double> DistanceTo(const SpecularSphere& sphere,
                                                const glm::dvec3& origin,
                                                const glm::dvec3& direction);
+
+/// A sphere that a ray enters.
+struct EnteredSphere {
+  std::size_t number;
+  double distance_m;
+};
+
+/// Returns the first sphere that a ray enters from outside; no value if there is none.
+[[nodiscard]] std::optional<EnteredSphere> FirstSphereOn(std::span<const SpecularSphere> spheres,
+                                                         const glm::dvec3& origin,
+                                                         const glm::dvec3& direction);
 
 /// A ray that leaves a sphere.
 struct LeavingRay {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // This header provides the geometry of a scene: what a camera ray hits, which is terrain, the bare
-// planet, or the sky.
+// planet, or the sky. Spheres of glass and mirrors are found by PixelShader.
 //
 // All coordinates are in the frame of SceneGround. Altitudes are distances from the sphere that
 // osculates the ellipsoid at the frame's origin; its centre is at (0, 0, -R).
@@ -24,7 +24,7 @@ namespace alpenglow::renderer {
 [[nodiscard]] double AltitudeOverSphere(const glm::dvec3& point, double radius_m);
 
 /// Kind of object that a camera ray hits first.
-enum class HitKind { kSky, kTerrain, kPlanet };
+enum class HitKind { kSky, kTerrain, kPlanet, kSphere };
 struct Hit {
   HitKind kind = HitKind::kSky;
   double distance_m = std::numeric_limits<double>::infinity();

@@ -241,11 +241,12 @@ TEST(TraceableScene, NamesAllContentThatPathsDoNotTrace) {
   scene.lights.emplace_back();
   scene.layers.emplace_back();
   scene.volumes.emplace_back();
+  scene.objects.emplace_back();
   scene.ground.kind = GroundCover::Kind::kWater;
   scene.ground.sea_level_m = 0.0;
   scene.terrain.land_cover = "map.tif";
   scene.camera.polariser_rad = 0.0;
-  EXPECT_EQ(UntracedContent(scene).size(), 7U);
+  EXPECT_EQ(UntracedContent(scene).size(), 8U);
   const auto message =
       testing::AllOf(testing::HasSubstr("lamps (light)"), testing::HasSubstr("fog (fog)"),
                      testing::HasSubstr("(ground.cover)"));

@@ -78,6 +78,10 @@ TEST(Scene, TheManualsSceneHasTheDefaults) {
   EXPECT_EQ(manual.ground.kind, bare.ground.kind);
   EXPECT_EQ(manual.ground.wind_m_per_s, bare.ground.wind_m_per_s);
   EXPECT_EQ(manual.lights.size() + manual.volumes.size(), 2U);
+  ASSERT_EQ(manual.objects.size(), 1U);
+  EXPECT_EQ(manual.objects[0].radius_m, SceneObject{}.radius_m);
+  EXPECT_EQ(manual.objects[0].index, SceneObject{}.index);
+  EXPECT_EQ(manual.objects[0].photons, SceneObject{}.photons);
   EXPECT_EQ(manual.lights.at(0).temperature_k, Light{}.temperature_k);
   EXPECT_EQ(manual.lights.at(0).radius_m, Light{}.radius_m);
   EXPECT_EQ(manual.volumes.at(0).albedo, Volume{}.albedo);
@@ -427,6 +431,22 @@ const std::string kFog = kPlace + "[fog]\n", kGround = kPlace + "[ground]\n",
                   kLamp = kPlace + "[[light]]\nlatitude = 35\nlongitude = 138\n",
                   kVolume = kPlace + "[[volume]]\nlatitude = 35\nlongitude = 138\n",
                   kSmoke = kVolume + "size_m = [9, 9, 9]\nvisibility_m = 50\n";
+
+TEST(Scene, SpheresAreRefusedByKey) {
+  const std::string ball = kPlace + "[[object]]\nlatitude = 35\nlongitude = 138\n";
+  EXPECT_EQ(FaultOf(ball), "no fault");
+  EXPECT_EQ(FaultOf(ball + "material = \"mirror\"\nradius_m = 2\n"), "no fault");
+  ExpectFaults({
+      {kPlace + "[[object]]\nlatitude = 35\n", "object[0].longitude is missing"},
+      {ball + "radius_m = 0\n", "object[0].radius_m is 0; it must lie in [0.01, 1000]"},
+      {ball + "index = 0.9\n", "object[0].index is 0.9; it must lie in [1, 4]"},
+      {ball + "photons = 0\n", "object[0].photons is 0; it must lie in [1, "},
+      {ball + "photons = 1.5\n", "object[0].photons is 1.5; it must be a whole number"},
+      {ball + "material = \"wood\"\n", "object[0].material is \"wood\""},
+      {ball + "material = \"mirror\"\nindex = 1.5\n", "object[0].index is for glass"},
+      {ball + "height_m = 9\nabove_ground_m = 2\n", "give one"},
+  });
+}
 
 // Hard case 42.
 TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {

@@ -687,6 +687,23 @@ const std::vector<ChangedKey>& ChangedVolumes() {
   return kKeys;
 }
 
+constexpr char kBall[] = "[[object]]\nlatitude = 46.5\nlongitude = 8\n";
+
+const std::vector<ChangedKey>& ChangedObjects() {
+  static const std::vector<ChangedKey> kKeys{
+      {"", "", kBall},
+      {kBall, "", kBall},
+      {"[[object]]\nlongitude = 8\n", "latitude = 46.5", "latitude = 46.6"},
+      {"[[object]]\nlatitude = 46.5\n", "longitude = 8", "longitude = 9"},
+      {kBall, "shape = 'sphere'\nabove_ground_m = 1", "above_ground_m = 2"},
+      {kBall, "above_ground_m = 3", "height_m = 3"},
+      {kBall, "", "radius_m = 2"},
+      {kBall, "", "material = 'mirror'"},
+      {kBall, "", "index = 1.6"},
+      {kBall, "", "photons = 1000"}};
+  return kKeys;
+}
+
 constexpr char kCumulus[] = "[[cloud]]\ngenus = 'cumulus'\n";
 constexpr char kCirrus[] = "[[cloud]]\ngenus = 'cirrus'\n";
 constexpr char kCloudGrid[] = "[[cloud]]\ngrid = 'one.txt'\n";
@@ -749,7 +766,7 @@ TEST(Manifest, CloudsDependOnTheDayOfTheSceneAlone) {
 
 std::vector<std::vector<ChangedKey>> AllChanges() {
   return {ChangedPlacesAndCameras(), ChangedGrounds(), ChangedLights(), ChangedAir(),
-          ChangedVolumes(),          ChangedClouds()};
+          ChangedVolumes(),          ChangedObjects(), ChangedClouds()};
 }
 
 TEST_F(SeriesRun, ResumeRendersAgainAfterAnyChangeOfTheScene) {
@@ -820,6 +837,7 @@ std::vector<Scene> ScenesWithEveryTable(const fs::path& folder) {
     scene.lights.resize(1);
     scene.lights[0].type = Light::Type::kSpot;
     scene.volumes.resize(1);
+    scene.objects.resize(1);
     scene.clouds.resize(1);
   }
   return scenes;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Spheres of glass and mirrors of a scene: their places, and the light that one distant light sends
+// through them into media (caustics).
+//
+// The spheres of a scene share the sunlight at the first of them that is lit: they stand near each
+// other. Beams end at the ground, or after 12 radii of the largest sphere. Their radius is half a pixel
+// at the nearest sphere, or more where the photons are too few for that.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "atmosphere/colour/spectrum.h"
+#include "renderer/media/local_media.h"
+#include "renderer/scene/scene.h"
+#include "renderer/specular/beam_map.h"
+#include "renderer/specular/specular_sphere.h"
+#include "renderer/surface/scene_geometry.h"
+#include "renderer/surface/scene_ground.h"
+
+namespace alpenglow::renderer {
+
+/// Returns the spheres of a scene in the frame of its ground. Throws InputError "scene.toml:
+/// object[0].height_m ..." for a sphere whose underside is below the ground.
+[[nodiscard]] std::vector<SpecularSphere> SpheresOf(const Scene& scene, const SceneGround& ground);
+
+/// The surroundings of spheres in one light.
+struct SphereSurroundings {
+  const std::vector<SpecularSphere>& spheres;
+  const SceneGeometry& geometry;
+  DiskOfLight light;
+  Spectrum irradiance;  // at the spheres, W m^-2 nm^-1
+  int photons;
+  glm::dvec3 eye;
+  double pixel_rad;
+};
+
+/// The caustics of one light in media. Immutable; safe to use from many threads.
+class Caustics {
+ public:
+  Caustics(const SphereSurroundings& around, LocalMedia media);
+
+  /// Returns the light that arrives at the origin of a ray [W m^-2 sr^-1 nm^-1].
+  [[nodiscard]] Spectrum Along(const glm::dvec3& origin, const glm::dvec3& direction,
+                               double length_m) const;
+
+ private:
+  Spectrum irradiance_;
+  BeamMap map_;
+};
+
+}  // namespace alpenglow::renderer
