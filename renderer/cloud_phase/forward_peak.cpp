@@ -20,27 +20,41 @@ constexpr std::size_t kAngles = 512, kDepths = ForwardPeak::kDepths;
 constexpr double kShallowest = 1e-3;
 // Degree of the series, and the degree of its window exp(-(l / w)^2). The diffraction by crystals is
 // so narrow that its series does not end here, and would ring over all angles without a window. The
-// window rounds off angles below 0.2 degrees.
+// window rounds off angles below 0.2 degrees. The series of a lobe that ends before this degree needs no
+// window.
 constexpr int kSeriesDegree = 1500;
 constexpr double kWindowDegree = 400.0;
+constexpr double kEnded = 1e-5;
 // Within the first angle the phase function has the window too, so that the peak and its removal are
 // equally round; from the second one on it is exact, with halos.
 constexpr double kRoundWithin_deg = 1.0, kExactFrom_deg = 2.0;
 
-double WindowAt(std::size_t degree) {
-  return std::exp(-std::pow(static_cast<double>(degree) / kWindowDegree, 2));
-}
+/// Legendre coefficients of a phase function, and a window over their degrees.
+struct PeakMoments {
+  std::vector<double> chi, window;
+
+  explicit PeakMoments(const PhaseFunction& phase)
+      : chi(LegendreCoefficients(phase, kSeriesDegree)), window(chi.size(), 1.0) {
+    // Tables are linear between angles, so that their series never end.
+    if (phase.kind != PhaseKind::kTable && std::abs(chi.back()) < kEnded) return;
+    for (std::size_t l = 0; l < window.size(); ++l) {
+      window[l] = std::exp(-std::pow(static_cast<double>(l) / kWindowDegree, 2));
+    }
+  }
+};
 
 /// Returns the phase function, round near the forward direction.
-/// @param chi  its Legendre coefficients. @param series  (2 l + 1) / (4 pi) P_l.
-double RoundPhase(const PhaseFunction& phase, double angle, const std::vector<double>& chi,
+/// @param series  (2 l + 1) / (4 pi) P_l.
+double RoundPhase(const PhaseFunction& phase, double angle, const PeakMoments& moments,
                   const std::vector<double>& series) {
   const double exact = Phase(phase, std::cos(angle));
   const double share =
       (angle / kRadiansPerDegree - kRoundWithin_deg) / (kExactFrom_deg - kRoundWithin_deg);
   if (share >= 1.0) return exact;
   double round = 0.0;
-  for (std::size_t l = 0; l < chi.size(); ++l) round += WindowAt(l) * chi[l] * series[l];
+  for (std::size_t l = 0; l < series.size(); ++l) {
+    round += moments.window[l] * moments.chi[l] * series[l];
+  }
   return std::lerp(round, exact, std::max(share, 0.0));
 }
 
@@ -80,7 +94,8 @@ struct PeakFactors {
   std::vector<double> effective, broadened;  // [depth][degree]
 };
 
-PeakFactors PeakFactorsOf(const std::vector<double>& chi, int degree, double fraction) {
+PeakFactors PeakFactorsOf(const PeakMoments& moments, int degree, double fraction) {
+  const std::vector<double>& chi = moments.chi;
   PeakFactors factors;
   for (std::size_t i = 0; i < kDepths; ++i) {
     const double x = PeakDepthAt(i);
@@ -88,8 +103,8 @@ PeakFactors PeakFactorsOf(const std::vector<double>& chi, int degree, double fra
       const double a = static_cast<int>(l) <= degree ? 1.0 : chi[l] / fraction;
       // (e^(-x (1 - a)) - e^(-x)) / x = e^(-x (1 - a)) (1 - e^(-x a)) / x, without cancellation.
       const double orders = -std::exp(-x * (1.0 - a)) * std::expm1(-x * a) / x;
-      factors.effective.push_back(WindowAt(l) * fraction * (orders - a));
-      factors.broadened.push_back(WindowAt(l) * chi[l] * std::expm1(-x * (1.0 - a)));
+      factors.effective.push_back(moments.window[l] * fraction * (orders - a));
+      factors.broadened.push_back(moments.window[l] * chi[l] * std::expm1(-x * (1.0 - a)));
     }
   }
   return factors;
@@ -103,16 +118,17 @@ ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
     throw InputError(
         fmt::format("moments of light in clouds of degree {}; it must be 0 to 16", degree));
   }
-  const std::vector<double> chi = LegendreCoefficients(phase, kSeriesDegree);
+  const PeakMoments moments(phase);
+  const std::vector<double>& chi = moments.chi;
   fraction_ = chi[static_cast<std::size_t>(degree) + 1];
   if (!(fraction_ > 0.0 && fraction_ < 1.0)) {
     throw InputError(
         fmt::format("a phase function of clouds has no forward peak beyond degree {}", degree));
   }
-  const PeakFactors factors = PeakFactorsOf(chi, degree, fraction_);
+  const PeakFactors factors = PeakFactorsOf(moments, degree, fraction_);
   tbb::parallel_for(std::size_t{0}, kAngles, [&](std::size_t angle) {
     const std::vector<double> series = LegendreSeries(kSeriesDegree, std::cos(PeakAngleAt(angle)));
-    const double value = RoundPhase(phase, PeakAngleAt(angle), chi, series);
+    const double value = RoundPhase(phase, PeakAngleAt(angle), moments, series);
     for (std::size_t depth = 0; depth < kDepths; ++depth) {
       double effective = value, broadened = value;
       for (std::size_t l = 0; l < chi.size(); ++l) {
