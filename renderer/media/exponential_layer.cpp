@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/media/exponential_layer.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -123,6 +125,16 @@ double ExponentialLayer::Column(const glm::dvec3& origin, const glm::dvec3& dire
                                     : std::min(from.altitude_m, to.altitude_m);
   return shared::ColumnBetween(from.mu, to.mu, ColumnUp(from.altitude_m, std::abs(from.mu)),
                                ColumnUp(to.altitude_m, std::abs(to.mu)), ColumnUp(lowest, 0.0));
+}
+
+const LayerBeam& ExponentialLayer::beam() const {
+  // A thread that waits for parallel work must not begin a task that waits for this.
+  std::call_once(tabulated_, [this] {
+    tbb::this_task_arena::isolate([this] {
+      beam_.emplace(optics().phase, optics().scattering_per_m[0] / optics().extinction_per_m[0]);
+    });
+  });
+  return *beam_;
 }
 
 std::vector<DensePiece> ExponentialLayer::PiecesAlong(const glm::dvec3& origin,

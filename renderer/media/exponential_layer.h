@@ -8,12 +8,14 @@
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "atmosphere/lamp/lamp.h"  // LayerLogDensity of the shared text
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
+#include "renderer/media/layer_beam.h"
 #include "renderer/media/local_medium.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_ground.h"
@@ -73,12 +75,17 @@ class ExponentialLayer final : public LocalMedium {
                               double length_m) const override;
   [[nodiscard]] std::unique_ptr<const LitMedium> LitBy(const MediaSources& sources) const override;
 
+  /// Returns the first order of sunlight, which is tabulated for the phase function at the first call.
+  [[nodiscard]] const LayerBeam& beam() const;
+
  private:
   /// Returns the column to space from an altitude, for a zenith cosine >= 0.
   [[nodiscard]] double ColumnUp(double altitude_m, double mu) const;
 
   LayerShape shape_;
   double thin_m_;  // density is below 1e-9 above this altitude
+  mutable std::once_flag tabulated_;
+  mutable std::optional<LayerBeam> beam_;
 };
 
 /// Returns the layers of a scene, without those that lie wholly below the ground.

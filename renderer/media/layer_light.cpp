@@ -6,8 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "lut/multiple_scattering/spherical_harmonics.h"
-#include "renderer/media/eddington_slab.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -15,7 +13,10 @@ namespace {
 /// Skylight is attenuated in a layer like a beam of this zenith cosine: the diffusivity factor 1.66 of
 /// Elsasser (1942).
 constexpr double kSkyCosine = 0.6;
-constexpr int kGlowNodes = 65;
+/// Above a layer, light from its top and light from the sky meet at the horizontal. The forward peak
+/// turns light by a few degrees, and rounds off this edge; closer to it than this sine, light is
+/// interpolated.
+constexpr double kHorizonSine = 0.03;
 
 Spectrum NotNegative(Spectrum light) {
   for (std::size_t band = 0; band < light.size(); ++band) {
@@ -24,14 +25,15 @@ Spectrum NotNegative(Spectrum light) {
   return light;
 }
 
-std::vector<double> AltitudesOver(const ExponentialLayer& layer) {
-  constexpr double kEndless_m = 8000.0;
-  const double step = std::isinf(layer.scale_height_m()) ? kEndless_m : layer.scale_height_m();
-  std::vector<double> altitudes;
-  for (const double share : {0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
-    altitudes.push_back(layer.bottom_m() + share * step);
-  }
-  return altitudes;
+/// Returns the azimuth of a direction from the vertical plane of the light.
+double AzimuthFrom(const glm::dvec3& to_light, const glm::dvec3& direction) {
+  return std::atan2(direction.y, direction.x) - std::atan2(to_light.y, to_light.x);
+}
+
+/// Returns how light travels that reaches an eye against its viewing direction. Light of the sun
+/// travels with azimuth 0.
+LightWay WayInto(const glm::dvec3& look, const glm::dvec3& to_light) {
+  return {-look.z, AzimuthFrom(to_light, look)};
 }
 
 }  // namespace
@@ -40,51 +42,53 @@ LayerLight::LayerLight(const ExponentialLayer& layer, const MultipleScattering& 
                        const LightDirection& light, const Spectrum& in_air)
     : layer_(layer),
       to_light_(light.seen),
-      chi_(LegendreCoefficients(layer.optics().phase, diffuse.options().degree)),
       extinction_per_m_(layer.optics().extinction_per_m[0]),
       depth_(extinction_per_m_ * layer.ColumnAbove(layer.bottom_m())),
-      sky_(diffuse, {0.0, 0.0, 1.0}, light.for_air, AltitudesOver(layer)),
-      ground_(diffuse.bands()) {
-  const double albedo = layer.optics().scattering_per_m[0] / extinction_per_m_;
-  peak_scale_ = 1.0 - albedo * PeakFraction({albedo, chi_[1], chi_[2]});
-  broad_.kind = PhaseKind::kHenyeyGreenstein;
-  broad_.g = std::clamp(chi_[1], -0.99, 0.99);
-  const Spectrum sky = diffuse.SkyIrradiance(std::max(layer.bottom_m(), 0.0), sky_.mu_s());
+      albedo_(layer.optics().scattering_per_m[0] / extinction_per_m_),
+      nodes_(depth_),
+      sky_(diffuse, {0.0, 0.0, 1.0}, light.for_air, {std::max(layer.bottom_m(), 0.0)}),
+      all_of_it_(static_cast<std::size_t>(diffuse.options().degree) + 1, 1.0),
+      ground_(diffuse.bands()),
+      clear_sky_(diffuse.SkyIrradiance(std::max(layer.bottom_m(), 0.0), sky_.mu_s())) {
   const std::vector<double>& ground_albedo = diffuse.medium().ground_albedo;
   for (std::size_t band = 0; band < ground_.size(); ++band) {
-    ground_[band] = static_cast<float>(ground_albedo[band] / kPi) *
-                    (static_cast<float>(std::max(to_light_.z, 0.0)) * in_air[band] + sky[band]);
+    ground_[band] =
+        static_cast<float>(ground_albedo[band] / kPi) *
+        (static_cast<float>(std::max(to_light_.z, 0.0)) * in_air[band] + clear_sky_[band]);
   }
   sky_ = sky_.WithoutGround(ground_);
   // This is the cosine for which the plane layer is as deep towards the sun as the layer over a
   // round planet.
   const double slant = layer.ColumnToSpace({0.0, 0.0, layer.bottom_m()}, to_light_) /
                        layer.ColumnAbove(layer.bottom_m());
-  Solve(albedo, std::clamp(1.0 / slant, 1e-3, 1.0), in_air, sky, ground_albedo);
+  for (std::size_t band = 0; band < ground_.size(); ++band) {
+    bands_.push_back(Solved(band, std::clamp(1.0 / slant, 1e-3, 1.0),
+                            static_cast<double>(in_air[band]),
+                            static_cast<double>(clear_sky_[band]), ground_albedo[band]));
+  }
 }
 
-void LayerLight::Solve(double albedo, double mu0, const Spectrum& sun, const Spectrum& sky,
-                       const std::vector<double>& ground_albedo) {
-  const SlabScattering scattering{albedo, chi_[1], chi_[2]};
-  for (Glow* glow : {&of_sun_, &of_sky_}) {
-    glow->mean.assign(kGlowNodes, Spectrum(sun.size()));
-    glow->slope.assign(kGlowNodes, Spectrum(sun.size()));
-  }
-  for (std::size_t band = 0; band < sun.size(); ++band) {
-    const EddingtonSlab under_sun(scattering, depth_, ground_albedo[band], mu0);
-    const EddingtonSlab under_sky(scattering, depth_, ground_albedo[band], kSkyCosine);
-    const auto beam = static_cast<double>(sun[band]);
-    const double sky_beam = static_cast<double>(sky[band]) / kSkyCosine;
-    for (std::size_t i = 0; i < kGlowNodes; ++i) {
-      const double u = static_cast<double>(i) / (kGlowNodes - 1);
-      const SlabField sunny = under_sun.At(depth_ * u * u * u * u);
-      const SlabField dull = under_sky.At(depth_ * u * u * u * u);
-      of_sun_.mean[i][band] = static_cast<float>(beam * sunny.mean);
-      of_sun_.slope[i][band] = static_cast<float>(beam * sunny.slope);
-      of_sky_.mean[i][band] = static_cast<float>(sky_beam * dull.mean);
-      of_sky_.slope[i][band] = static_cast<float>(sky_beam * dull.slope);
-    }
-  }
+Spectrum LayerLight::SkyFrom(const LightWay& way) const {
+  const double sine = std::sqrt(std::max(1.0 - way.mu * way.mu, 0.0));
+  const double azimuth = std::atan2(to_light_.y, to_light_.x) + way.azimuth;
+  return NotNegative(
+      sky_.Towards({sine * std::cos(azimuth), sine * std::sin(azimuth), -way.mu}, all_of_it_)
+          .front());
+}
+
+LayerLight::Band LayerLight::Solved(std::size_t band, double mu_s, double sun, double sky,
+                                    double ground_albedo) const {
+  LayerStack stack({GreyLayer(layer_.optics().phase, depth_, albedo_)}, ground_albedo,
+                   kLayerStreams);
+  const LayerGlow of_sun(stack, LayerField::UnderSun(stack, mu_s), mu_s);
+  const LayerGlow of_sky(
+      stack,
+      LayerField::UnderSky(
+          stack, [&](const LightWay& way) { return static_cast<double>(SkyFrom(way)[band]); }),
+      0.0);
+  // Moments of low degree miss some of the irradiance.
+  const double found = of_sky.fluxes().front().down;
+  return {std::move(stack), of_sun, of_sky, sun, found > 0.0 ? sky / found : 0.0};
 }
 
 double LayerLight::DepthAbove(double altitude_m) const {
@@ -92,8 +96,7 @@ double LayerLight::DepthAbove(double altitude_m) const {
 }
 
 AxisPosition LayerLight::PlaceOf(double altitude_m) const {
-  const double u =
-      depth_ > 0.0 ? (kGlowNodes - 1) * std::sqrt(std::sqrt(DepthAbove(altitude_m) / depth_)) : 0.0;
+  const double u = nodes_.NodeAt(DepthAbove(altitude_m));
   const double low = std::min(std::floor(u), kGlowNodes - 2.0);
   return {static_cast<std::size_t>(low), static_cast<float>(u - low)};
 }
@@ -103,44 +106,68 @@ Spectrum LayerLight::At(const std::vector<Spectrum>& nodes, const AxisPosition& 
 }
 
 LayerLight::Look LayerLight::LookAlong(const glm::dvec3& look) const {
+  const LightWay way = WayInto(look, to_light_);
   const double cosine = glm::dot(look, to_light_);
-  return {Phase(layer_.optics().phase, cosine), Phase(broad_, cosine), look.z,
-          sky_.Towards(look, chi_)};
+  const std::vector<Spectrum> dark(kGlowNodes, Spectrum(bands_.size()));
+  Look seen{beam().AtAngle(cosine), dark, dark};
+  if (std::abs(way.mu) >= kHorizonSine) {
+    AddGlow(way, 1.0, seen);
+    return seen;
+  }
+  const double up = 0.5 + 0.5 * way.mu / kHorizonSine;
+  AddGlow({kHorizonSine, way.azimuth}, up, seen);
+  AddGlow({-kHorizonSine, way.azimuth}, 1.0 - up, seen);
+  return seen;
 }
 
-LayerLight::Scattered LayerLight::At(const Look& look, double altitude_m, const Spectrum& sun,
-                                     const Spectrum& lit, double slant_depth) const {
-  const double direct = std::exp(-slant_depth);
-  const double taken_along = std::exp(-peak_scale_ * slant_depth) - direct;
-  const auto once = static_cast<float>(look.phase * direct + look.broad_phase * taken_along);
-  // Light that reaches the eye travels against the viewing direction: downwards if the view goes
-  // upwards.
-  const auto tilt = static_cast<float>(chi_[1] * look.down);
+void LayerLight::AddGlow(const LightWay& way, double share, Look& seen) const {
+  const GlowDirection direction(bands_.front().stack, way);
+  const Spectrum sky = SkyFrom(way);
+  for (std::size_t band = 0; band < bands_.size(); ++band) {
+    const Band& lit = bands_[band];
+    const std::vector<double> of_sun = lit.of_sun.Towards(direction, 0.0);
+    const std::vector<double> of_sky =
+        lit.of_sky.Towards(direction, static_cast<double>(sky[band]));
+    // Series of low degree are negative where little light arrives.
+    for (std::size_t node = 0; node < kGlowNodes; ++node) {
+      seen.of_sun[node][band] += static_cast<float>(share * std::max(lit.sun * of_sun[node], 0.0));
+      seen.of_sky[node][band] += static_cast<float>(share * std::max(lit.sky * of_sky[node], 0.0));
+    }
+  }
+}
+
+LayerLight::Glow LayerLight::GlowAt(const Look& look, double altitude_m) const {
   const AxisPosition place = PlaceOf(altitude_m);
-  return {once * sun + lit * Field(of_sun_, place, tilt),
-          SkyLeft(altitude_m) * NotNegative(sky_.At(look.sky, altitude_m)) +
-              Field(of_sky_, place, tilt)};
-}
-
-// At the edge of a layer, a radiance that is linear in the cosine is negative in directions from
-// which no light arrives.
-Spectrum LayerLight::Field(const Glow& glow, const AxisPosition& place, float tilt) {
-  return NotNegative(At(glow.mean, place) + tilt * At(glow.slope, place));
+  return {At(look.of_sun, place), At(look.of_sky, place)};
 }
 
 float LayerLight::SkyLeft(double altitude_m) const {
-  return static_cast<float>(std::exp(-peak_scale_ * DepthAbove(altitude_m) / kSkyCosine));
+  return static_cast<float>(std::exp(-beam().peak_scale() * DepthAbove(altitude_m) / kSkyCosine));
 }
 
 Spectrum LayerLight::OnSurface(double altitude_m, double cos_up) const {
   const AxisPosition place = PlaceOf(altitude_m);
-  const auto tilt = static_cast<float>(2.0 * kPi / 3.0 * cos_up);
-  Spectrum irradiance =
-      static_cast<float>(kPi) * (At(of_sun_.mean, place) + At(of_sky_.mean, place)) +
-      tilt * (At(of_sun_.slope, place) + At(of_sky_.slope, place));
-  // The light of the ground is already part of the clear sky's irradiance of a slope.
-  const auto twice = static_cast<float>(kPi * 0.5 * (1.0 - cos_up)) * SkyLeft(altitude_m);
-  return NotNegative(irradiance + -twice * ground_);
+  const double from_above = 0.5 * (1.0 + cos_up), from_below = 1.0 - from_above;
+  const auto all = [&](const LayerGlow& glow) {
+    double sum = 0.0;
+    for (const int end : {0, 1}) {
+      const LayerFluxes& fluxes = glow.fluxes()[place.low + static_cast<std::size_t>(end)];
+      sum += static_cast<double>(place.Weight(end)) *
+             (from_above * fluxes.down + from_below * fluxes.up);
+    }
+    return sum;
+  };
+  // Part of the clear sky, and of the ground below it, is counted as not scattered.
+  const auto left = static_cast<double>(SkyLeft(altitude_m));
+  Spectrum irradiance(bands_.size());
+  for (std::size_t band = 0; band < bands_.size(); ++band) {
+    const Band& lit = bands_[band];
+    const double clear = from_above * static_cast<double>(clear_sky_[band]) +
+                         from_below * kPi * static_cast<double>(ground_[band]);
+    irradiance[band] =
+        static_cast<float>(lit.sun * all(lit.of_sun) + lit.sky * all(lit.of_sky) - left * clear);
+  }
+  return NotNegative(irradiance);
 }
 
 }  // namespace alpenglow::renderer

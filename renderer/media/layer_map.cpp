@@ -11,14 +11,16 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/shell.h"
-#include "lut/multiple_scattering/spherical_harmonics.h"
+#include "renderer/media/layer_beam.h"
 #include "renderer/media/layer_light.h"
 #include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {
 namespace {
 
-enum Quantity { kDirect, kBroad, kGlow, kSkyLight, kQuantities };
+constexpr std::size_t kPeakNodes = 4;
+enum Quantity : std::size_t { kBeam, kGlow = kPeakNodes, kSkyLight, kQuantities };
+static_assert(kQuantities == LayerMap::kQuantities);
 
 glm::vec4 InFloats(const Spectrum& light) {
   glm::vec4 values(0.0F);
@@ -28,8 +30,42 @@ glm::vec4 InFloats(const Spectrum& light) {
   return values;
 }
 
-/// The four quantities, summed from the eye on.
-using Sums = std::array<glm::vec4, kQuantities>;
+/// Lagrange's polynomials of e^(-x / X) through four depths x_k of the forward peak.
+class PeakNodes {
+ public:
+  // Light that passed the depth x is attenuated by e^(-x s / (1 - s)), which is e^-5 at the deepest
+  // node. There e^(-x / X) is e^-8/3: functions e^(-x a) with a of 0, 1/3, 2/3 and 1 are exact for a
+  // depth of 8.
+  explicit PeakNodes(double peak_scale) {
+    constexpr double kSpan = 8.0 / 3.0;
+    per_depth_ = kSpan / std::clamp(5.0 * (1.0 - peak_scale) / peak_scale, 1.0, 60.0);
+    for (std::size_t k = 0; k < kPeakNodes; ++k) {
+      const double chebyshev = std::cos(kPi * (static_cast<double>(k) + 0.5) / kPeakNodes);
+      node_[k] = std::lerp(std::exp(-kSpan), 1.0, 0.5 + 0.5 * chebyshev);
+    }
+  }
+
+  [[nodiscard]] double Depth(std::size_t k) const { return -std::log(node_[k]) / per_depth_; }
+
+  [[nodiscard]] std::array<double, kPeakNodes> WeightsAt(double depth) const {
+    const double at = std::exp(-depth * per_depth_);
+    std::array<double, kPeakNodes> weights{};
+    for (std::size_t k = 0; k < kPeakNodes; ++k) {
+      weights[k] = 1.0;
+      for (std::size_t j = 0; j < kPeakNodes; ++j) {
+        if (j != k) weights[k] *= (at - node_[j]) / (node_[k] - node_[j]);
+      }
+    }
+    return weights;
+  }
+
+ private:
+  double per_depth_;  // 1 / X
+  std::array<double, kPeakNodes> node_{};
+};
+
+/// The quantities, at one place of a ray or summed from the eye on.
+using Quantities = std::array<glm::vec4, kQuantities>;
 
 class LayerMarch {
  public:
@@ -40,39 +76,35 @@ class LayerMarch {
         radius_m_(air.medium().planet_radius_m),
         eye_(0.0, 0.0, std::max(under.altitude_m, 0.0)),
         light_(layer, air.multiple_scattering(), under.light,
-               SunInAir({0.0, 0.0, layer.HeadAltitude()})) {}
+               SunInAir({0.0, 0.0, layer.HeadAltitude()})),
+        nodes_(light_.beam().peak_scale()) {}
 
   [[nodiscard]] const LayerLight& light() const { return light_; }
 
-  /// Returns the sums at fractions i / (depths - 1) of the light that the layer removes along the
-  /// whole ray.
-  [[nodiscard]] std::vector<Sums> Along(const glm::dvec3& direction, int depths) const {
+  /// Returns u_k of a scattering angle.
+  [[nodiscard]] glm::vec4 PhaseAt(double cos_scattering) const {
+    const LayerBeam::Angle angle = light_.beam().AtAngle(cos_scattering);
+    glm::vec4 phase(0.0F);
+    for (std::size_t k = 0; k < kPeakNodes; ++k) {
+      phase[static_cast<glm::length_t>(k)] = static_cast<float>(angle.At(nodes_.Depth(k)));
+    }
+    return phase;
+  }
+
+  /// Returns the quantities at fractions i / (depths - 1) of the light that the layer removes along
+  /// the whole ray.
+  [[nodiscard]] std::vector<Quantities> Along(const glm::dvec3& direction, int depths) const {
     const std::vector<Step> steps = StepsOf(direction);
-    std::vector<Sums> nodes(static_cast<std::size_t>(depths), Sums{});
-    if (steps.empty()) return nodes;
-    const double whole = steps.back().taken;
-    Sums sum{}, before{};
-    double taken = 0.0;
-    std::size_t node = 1;
+    if (steps.empty()) return std::vector<Quantities>(static_cast<std::size_t>(depths));
     const LayerLight::Look look = light_.LookAlong(direction);
-    for (const Step& step : steps) {
-      before = sum;
-      const Sums here = SourceAt(step, direction, look);
-      for (std::size_t q = 0; q < sum.size(); ++q) {
-        sum[q] += static_cast<float>(step.taken - taken) * here[q];
-      }
-      if (taken == 0.0) nodes[0] = here;
-      const auto at = [&](std::size_t i) {
-        return whole * static_cast<double>(i) / (depths - 1.0);
-      };
-      for (; node < nodes.size() && at(node) <= step.taken * (1.0 + 1e-9); ++node) {
-        const auto share = static_cast<float>((at(node) - taken) / (step.taken - taken));
-        for (std::size_t q = 0; q < sum.size(); ++q) {
-          nodes[node][q] =
-              (before[q] + share * (sum[q] - before[q])) / static_cast<float>(at(node));
-        }
-      }
-      taken = step.taken;
+    std::vector<Quantities> light;
+    for (const Step& step : steps) light.push_back(SourceAt(step, direction, look));
+    std::vector<Quantities> nodes(static_cast<std::size_t>(depths), light.front());
+    const double whole =
+        layer_.optics().extinction_per_m[0] * layer_.Column(eye_, direction, EndOf(direction));
+    for (std::size_t q = 0; q < kQuantities; ++q) {
+      const double scale = q < kGlow ? light_.beam().peak_scale() : 1.0;
+      SumUp(steps, light, {q, scale, -std::expm1(-scale * whole)}, nodes);
     }
     return nodes;
   }
@@ -80,8 +112,39 @@ class LayerMarch {
  private:
   struct Step {
     double middle_m;
-    double taken;  // fraction of light that the layer removes up to the end of this step
+    double middle_depth, depth;  // optical depths from the eye to its middle and its end
   };
+
+  /// One of the quantities.
+  struct Summed {
+    std::size_t number;
+    double scale;  // of optical depths
+    double whole;  // fraction of light that the layer removes along the whole ray
+  };
+
+  /// Replaces a quantity of every node but the first by its mean from the eye to there.
+  static void SumUp(const std::vector<Step>& steps, const std::vector<Quantities>& light,
+                    const Summed& of, std::vector<Quantities>& nodes) {
+    const auto at = [&](std::size_t i) {
+      return of.whole * static_cast<double>(i) / (static_cast<double>(nodes.size()) - 1.0);
+    };
+    glm::vec4 sum(0.0F);
+    double taken = 0.0;
+    std::size_t node = 1;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const glm::vec4& here = light[i][of.number];
+      const double next = -std::expm1(-of.scale * steps[i].depth);
+      for (; node < nodes.size() && at(node) <= next; ++node) {
+        const glm::vec4 upto = sum + static_cast<float>(at(node) - taken) * here;
+        nodes[node][of.number] = upto / static_cast<float>(at(node));
+      }
+      sum += static_cast<float>(next - taken) * here;
+      taken = next;
+    }
+    for (; node < nodes.size(); ++node) {
+      nodes[node][of.number] = sum / static_cast<float>(at(node));
+    }
+  }
 
   [[nodiscard]] Spectrum SunInAir(const glm::dvec3& point) const {
     const double altitude = std::max(AltitudeOverSphere(point, radius_m_), 0.0);
@@ -100,10 +163,10 @@ class LayerMarch {
     return shared::DistanceDownTo(eye_.z, direction.z, 0.0, radius_m_);
   }
 
-  // Returns steps up to the distance at which the layer is opaque, so short that neither the light in
+  // Returns steps up to the distance at which MarchMedia takes the layer for opaque, so short that neither the light in
   // the layer nor its density changes much within one.
   [[nodiscard]] std::vector<Step> StepsOf(const glm::dvec3& direction) const {
-    constexpr double kDepth = 0.1, kFall = 0.25, kOpaque = 12.0;
+    constexpr double kDepth = 0.1, kFall = 0.25, kOpaque = 13.9;
     constexpr double kShortest_m = 0.01;
     const double extinction = layer_.optics().extinction_per_m[0];
     std::vector<Step> steps;
@@ -120,11 +183,12 @@ class LayerMarch {
         double step = std::min({kDepth / per_m, by_fall, 0.05 * (piece.end_m - piece.begin_m)});
         step = std::min(std::max(step, kShortest_m), piece.end_m - t);
         const double middle = t + 0.5 * step;
+        const double before = tau;
         tau += step * extinction *
                (layer_.DensityAt(point) + 4.0 * layer_.DensityAt(eye_ + middle * direction) +
                 layer_.DensityAt(eye_ + (t + step) * direction)) /
                6.0;
-        steps.push_back({middle, -std::expm1(-tau)});
+        steps.push_back({middle, 0.5 * (before + tau), tau});
         t += step;
         if (piece.end_m - t < kShortest_m) break;
       }
@@ -133,26 +197,30 @@ class LayerMarch {
   }
 
   // Returns the light scattered at this step, attenuated by the air in front of it.
-  [[nodiscard]] Sums SourceAt(const Step& step, const glm::dvec3& direction,
-                              const LayerLight::Look& look) const {
+  [[nodiscard]] Quantities SourceAt(const Step& step, const glm::dvec3& direction,
+                                    const LayerLight::Look& look) const {
     const glm::dvec3 point = eye_ + step.middle_m * direction;
-    const double altitude = AltitudeOverSphere(point, radius_m_);
-    const double slant =
+    const LayerBeam& beam = light_.beam();
+    const double to_sun =
         layer_.optics().extinction_per_m[0] * layer_.ColumnToSpace(point, under_.light.seen);
-    const Spectrum sun = SunInAir(point);
-    Spectrum all(sun.size()), none(sun.size());
-    std::ranges::fill(all.values(), 1.0F);
-    const LayerLight::Scattered glow = light_.At(look, altitude, none, all, slant);
-    const auto direct = static_cast<float>(std::exp(-slant));
-    const auto with_peak = static_cast<float>(std::exp(-light_.peak_scale() * slant));
-    const auto scattered = static_cast<float>(layer_.optics().scattering_per_m[0] /
-                                              layer_.optics().extinction_per_m[0]);
+    const LayerLight::Glow glow = light_.GlowAt(look, AltitudeOverSphere(point, radius_m_));
+    const double albedo = layer_.optics().scattering_per_m[0] / layer_.optics().extinction_per_m[0];
     ViewRay ray{eye_.z, direction.z, 0.0, 0.0};
     ray.length_m = step.middle_m;
     ray.passes_ground = true;
-    const Spectrum left = scattered * air_.single_scattering().TransmittanceAlong(ray);
-    return {InFloats(direct * (left * sun)), InFloats((with_peak - direct) * (left * sun)),
-            InFloats(left * glow.of_sun), InFloats(left * glow.of_sky)};
+    const Spectrum left =
+        static_cast<float>(albedo) * air_.single_scattering().TransmittanceAlong(ray);
+    Quantities source{};
+    source[kGlow] = InFloats(left * glow.of_sun);
+    source[kSkyLight] = InFloats(left * glow.of_sky);
+    // Per fraction of the light that the layer removes without its forward peak.
+    const double once = std::exp(-beam.peak_scale() * to_sun) / beam.peak_scale();
+    const glm::vec4 sun = InFloats(static_cast<float>(once) * left * SunInAir(point));
+    const auto weights = nodes_.WeightsAt(beam.PeakDepth(to_sun + step.middle_depth));
+    for (std::size_t k = 0; k < kPeakNodes; ++k) {
+      source[kBeam + k] = static_cast<float>(weights[k]) * sun;
+    }
+    return source;
   }
 
   const ExponentialLayer& layer_;
@@ -161,6 +229,7 @@ class LayerMarch {
   double radius_m_;
   glm::dvec3 eye_;
   LayerLight light_;
+  PeakNodes nodes_;
 };
 
 // Returns the sine of the elevation for a position in [0, 1] on the axis, which is dense at the
@@ -173,9 +242,11 @@ double ElevationSine(double unit) {
 void AddRays(const LayerMarch& march, LayerMap& map) {
   const LayerMapSize& size = map.size;
   const double sun_azimuth = std::atan2(map.eye.light.seen.y, map.eye.light.seen.x);
-  const auto at = [&](int quantity, int depth, int azimuth, int elevation) {
-    return static_cast<std::size_t>(
-        ((quantity * size.depths + depth) * size.azimuths + azimuth) * size.elevations + elevation);
+  const auto at = [&](std::size_t quantity, int depth, int azimuth, int elevation) {
+    const auto of = [](int value) { return static_cast<std::size_t>(value); };
+    return ((quantity * of(size.depths) + of(depth)) * of(size.azimuths) + of(azimuth)) *
+               of(size.elevations) +
+           of(elevation);
   };
   map.light.resize(at(kQuantities, 0, 0, 0));
   for (int azimuth = 0; azimuth < size.azimuths; ++azimuth) {
@@ -183,12 +254,11 @@ void AddRays(const LayerMarch& march, LayerMap& map) {
     for (int elevation = 0; elevation < size.elevations; ++elevation) {
       const double sine = ElevationSine(elevation / (size.elevations - 1.0));
       const double cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
-      const std::vector<Sums> nodes =
+      const std::vector<Quantities> nodes =
           march.Along({cosine * std::cos(turn), cosine * std::sin(turn), sine}, size.depths);
       for (int depth = 0; depth < size.depths; ++depth) {
-        for (int q = 0; q < kQuantities; ++q) {
-          map.light[at(q, depth, azimuth, elevation)] =
-              nodes[static_cast<std::size_t>(depth)][static_cast<std::size_t>(q)];
+        for (std::size_t q = 0; q < kQuantities; ++q) {
+          map.light[at(q, depth, azimuth, elevation)] = nodes[static_cast<std::size_t>(depth)][q];
         }
       }
     }
@@ -217,7 +287,6 @@ LayerMap MakeLayerMap(const ExponentialLayer& layer, const SolvedAir& air,
                       const EyeUnderLight& under, const LayerMapSize& size) {
   ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
   const LayerMarch march(layer, air, under);
-  const std::vector<double> chi = LegendreCoefficients(layer.optics().phase, 2);
   LayerMap map;
   map.eye = under;
   map.size = size;
@@ -227,9 +296,11 @@ LayerMap MakeLayerMap(const ExponentialLayer& layer, const SolvedAir& air,
   map.top_m = air.medium().atmosphere_height_m;
   map.radius_m = air.medium().planet_radius_m;
   map.depth = map.extinction_per_m * layer.ColumnAbove(layer.bottom_m());
-  map.peak_scale = march.light().peak_scale();
-  map.phase = layer.optics().phase;
-  map.broad_g = std::clamp(chi[1], -0.99, 0.99);
+  map.peak_scale = march.light().beam().peak_scale();
+  for (int i = 0; i < LayerMap::kAngles; ++i) {
+    map.phase.push_back(
+        march.PhaseAt(std::cos(kPi * std::pow(i / (LayerMap::kAngles - 1.0), 2.0))));
+  }
   AddRays(march, map);
   AddSurfaces(march, layer, map);
   return map;

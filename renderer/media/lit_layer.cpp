@@ -16,34 +16,40 @@ double LitLayer::DepthToSun(const glm::dvec3& point) const {
 
 class LitLayer::OnOneRay final : public MediumOnRay {
  public:
-  OnOneRay(const LitLayer& lit, const glm::dvec3& direction)
-      : lit_(lit), look_(lit.light_.LookAlong(direction)) {}
+  OnOneRay(const LitLayer& lit, const glm::dvec3& origin, const glm::dvec3& direction)
+      : lit_(lit), origin_(origin), direction_(direction), look_(lit.light_.LookAlong(direction)) {}
 
   void AddSource(const LightOnPoint& light, double density, Spectrum& sum) const override {
+    const BeamDepths depths{lit_.DepthToSun(light.point),
+                            lit_.layer_.optics().extinction_per_m[0] *
+                                lit_.layer_.Column(origin_, direction_, light.distance_m)};
+    const auto once = static_cast<float>(lit_.light_.beam().Source(look_.beam, depths));
+    const LayerLight::Glow glow = lit_.light_.GlowAt(look_, light.altitude_m);
     const Spectrum lit = light.LitThrough(light.depth);
-    const LayerLight::Scattered scattered = lit_.light_.At(
-        look_, light.altitude_m, lit * light.in_air, lit, lit_.DepthToSun(light.point));
+    const Spectrum scattered =
+        lit * (once * light.in_air + glow.of_sun) + light.sky_left * glow.of_sky;
     const auto per_m = static_cast<float>(density * lit_.layer_.optics().scattering_per_m[0]);
     const Spectrum& irradiance = lit_.sources_.light.irradiance;
     for (std::size_t band = 0; band < sum.size(); ++band) {
-      sum[band] += per_m * irradiance[band] *
-                   (scattered.of_sun[band] + light.sky_left * scattered.of_sky[band]);
+      sum[band] += per_m * irradiance[band] * scattered[band];
     }
   }
 
  private:
   const LitLayer& lit_;
+  glm::dvec3 origin_, direction_;
   LayerLight::Look look_;
 };
 
-std::unique_ptr<const MediumOnRay> LitLayer::OnRay(const glm::dvec3& direction) const {
-  return std::make_unique<OnOneRay>(*this, direction);
+std::unique_ptr<const MediumOnRay> LitLayer::OnRay(const glm::dvec3& origin,
+                                                   const glm::dvec3& direction) const {
+  return std::make_unique<OnOneRay>(*this, origin, direction);
 }
 
 // The width of the disk does not matter for a layer.
 void LitLayer::AddDepthToLight(const glm::dvec3& point, const glm::dvec3& /*to_disk*/,
                                SpectrumOf<double>& depth) const {
-  const double of_layer = light_.peak_scale() * DepthToSun(point);
+  const double of_layer = light_.beam().peak_scale() * DepthToSun(point);
   for (std::size_t band = 0; band < depth.size(); ++band) depth[band] += of_layer;
 }
 

@@ -17,7 +17,7 @@ class LitLayer final : public LitMedium {
   LitLayer(const ExponentialLayer& layer, const MediaSources& sources);
 
   [[nodiscard]] std::unique_ptr<const MediumOnRay> OnRay(
-      const glm::dvec3& direction) const override;
+      const glm::dvec3& origin, const glm::dvec3& direction) const override;
   void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
                        SpectrumOf<double>& depth) const override;
   [[nodiscard]] float SkyLeft(double altitude_m) const override;

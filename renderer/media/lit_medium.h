@@ -36,6 +36,7 @@ struct MediaSources {
 /// Light of sun and sky on its way to a point of a medium.
 struct LightOnPoint {
   const glm::dvec3& point;
+  double distance_m;  // from the origin of the ray
   double altitude_m;
   const Spectrum& in_air;           // transmittance of the air for sunlight
   float past_terrain;               // fraction of the sunlight that terrain does not stop
@@ -79,7 +80,7 @@ class LitMedium {
   virtual ~LitMedium() = default;
 
   [[nodiscard]] virtual std::unique_ptr<const MediumOnRay> OnRay(
-      const glm::dvec3& direction) const = 0;
+      const glm::dvec3& origin, const glm::dvec3& direction) const = 0;
   /// Returns the extinction at density 1 for light of wide sources and of the medium itself [1/m];
   /// nothing: that of its optics.
   [[nodiscard]] virtual std::optional<SpectrumOf<double>> WideExtinction_per_m() const {

@@ -425,7 +425,8 @@ class LitVolume::OnOneRay final : public MediumOnRay {
   std::optional<VolumeOrders::Look> look_;  // nothing: the first order alone
 };
 
-std::unique_ptr<const MediumOnRay> LitVolume::OnRay(const glm::dvec3& direction) const {
+std::unique_ptr<const MediumOnRay> LitVolume::OnRay(const glm::dvec3& /*origin*/,
+                                                    const glm::dvec3& direction) const {
   return std::make_unique<OnOneRay>(*this, direction);
 }
 

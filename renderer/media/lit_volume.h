@@ -39,7 +39,7 @@ class LitVolume final : public LitMedium {
   LitVolume(const LocalBody& volume, const MediaSources& sources);
 
   [[nodiscard]] std::unique_ptr<const MediumOnRay> OnRay(
-      const glm::dvec3& direction) const override;
+      const glm::dvec3& origin, const glm::dvec3& direction) const override;
   [[nodiscard]] std::optional<SpectrumOf<double>> WideExtinction_per_m() const override;
   /// A lamp's light varies on the scale of its distance from the ray, so panels end there.
   void AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,

@@ -98,6 +98,7 @@ class Sources {
           const glm::dvec3& direction, const SunlitPath* sunlit)
       : sources_(sources),
         lit_(lit),
+        origin_(origin),
         direction_(direction),
         air_(sources, origin, direction),
         sunlit_(sunlit),
@@ -113,8 +114,8 @@ class Sources {
     for (std::size_t m = 0; m < lit_.size(); ++m) {
       if (densities[m] <= 0.0) continue;
       const SpectrumOf<double> depth = DepthOfOthers(m, point);
-      MediumAt(m).AddSource({point, altitude_m, air.sun, past_terrain, depth, columns_m[m],
-                             SkyPastOthers(m, altitude_m)},
+      MediumAt(m).AddSource({point, distance_m, altitude_m, air.sun, past_terrain, depth,
+                             columns_m[m], SkyPastOthers(m, altitude_m)},
                             densities[m], sum);
     }
     return air.left * sum;
@@ -139,13 +140,13 @@ class Sources {
 
   /// Returns a medium on the ray. One that the ray does not meet is never looked at.
   [[nodiscard]] const MediumOnRay& MediumAt(std::size_t m) {
-    if (!on_ray_[m]) on_ray_[m] = lit_[m]->OnRay(direction_);
+    if (!on_ray_[m]) on_ray_[m] = lit_[m]->OnRay(origin_, direction_);
     return *on_ray_[m];
   }
 
   const MediaSources& sources_;
   const LitMedia& lit_;
-  glm::dvec3 direction_;
+  glm::dvec3 origin_, direction_;
   AirOnRay air_;
   const SunlitPath* sunlit_;
   std::vector<std::unique_ptr<const MediumOnRay>> on_ray_;

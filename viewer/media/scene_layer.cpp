@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/media/scene_layer.h"
 
-#include <fmt/format.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -11,7 +10,6 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/medium/phase_forms.h"
 #include "renderer/lamps/scene_lamps.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
@@ -30,9 +28,8 @@ LayerBlock LayerBlockOf(const LayerMap& map, const EyeUnderLight& now) {
                  map.top_m / kMetres};
   block.eye = {std::max(now.altitude_m, 0.0) / kMetres, map.radius_m / kMetres, map.depth,
                map.peak_scale};
-  block.sun = {glm::vec3(now.light.seen), map.broad_g};
-  block.phase = ParametersOf(map.phase);
-  block.map_size = {map.size.elevations, map.size.azimuths, map.size.depths, 0.0};
+  block.sun = {glm::vec3(now.light.seen), 0.0};
+  block.map_size = {map.size.elevations, map.size.azimuths, map.size.depths, LayerMap::kAngles};
   return block;
 }
 
@@ -42,11 +39,9 @@ EyeUnderLight EyeUnder(const CameraPose& eye, const DistantLight& light) {
 
 }  // namespace
 
-std::vector<ShaderPiece> LayerTexts(PhaseKind kind) {
-  return {
-      {"layer constants", fmt::format("#define LAYER_PHASE(c, p) {}\n", FormOf(kind).expression)},
-      ViewerPiece("viewer/shaders/view/lights.glsl"),
-      ViewerPiece("viewer/shaders/media/layer.glsl")};
+std::vector<ShaderPiece> LayerTexts() {
+  return {ViewerPiece("viewer/shaders/view/lights.glsl"),
+          ViewerPiece("viewer/shaders/media/layer.glsl")};
 }
 
 void LayerPainter::Connect(const ShaderProgram& program) const {
@@ -61,11 +56,16 @@ void LayerPainter::Connect(const ShaderProgram& program) const {
 void LayerPainter::Upload(const LayerMap& map) {
   BindTexture(units_.first, GL_TEXTURE_3D, light_);
   UploadTexture(GL_TEXTURE_3D, light_,
-                {GL_RGBA32F, map.size.elevations, map.size.azimuths, 4 * map.size.depths, GL_RGBA,
-                 GL_FLOAT, map.light.data()});
+                {GL_RGBA32F, map.size.elevations, map.size.azimuths,
+                 LayerMap::kQuantities * map.size.depths, GL_RGBA, GL_FLOAT, map.light.data()});
+  // Drivers have few texture units, so that both tables share one.
+  static_assert(LayerMap::kAngles % LayerMap::kHeights == 0);
+  std::vector<glm::vec4> rows = map.on_surface;
+  rows.insert(rows.end(), map.phase.begin(), map.phase.end());
   BindTexture(units_.first + 1, GL_TEXTURE_2D, surface_);
   UploadTexture(GL_TEXTURE_2D, surface_,
-                {GL_RGBA32F, LayerMap::kHeights, 2, 1, GL_RGBA, GL_FLOAT, map.on_surface.data()});
+                {GL_RGBA32F, LayerMap::kHeights, static_cast<int>(rows.size()) / LayerMap::kHeights,
+                 1, GL_RGBA, GL_FLOAT, rows.data()});
   CheckGl("LayerPainter::Upload");
 }
 

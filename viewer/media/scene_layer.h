@@ -24,13 +24,13 @@ namespace alpenglow::viewer {
 
 /// Mirrors the uniform block `Layer` of media/layer.glsl.
 struct LayerBlock {
-  glm::vec4 shape, eye, sun, phase, map_size, other_sun;
+  glm::vec4 shape, eye, sun, map_size, other_sun;
 };
-static_assert(sizeof(LayerBlock) == 6 * sizeof(glm::vec4));
+static_assert(sizeof(LayerBlock) == 5 * sizeof(glm::vec4));
 
 /// Returns texts for a fragment stage, which follow SharedTexts(): MediaTo(direction, distance_km)
-/// and the rest of media/layer.glsl. @param kind  of the layer's phase function.
-[[nodiscard]] std::vector<ShaderPiece> LayerTexts(PhaseKind kind);
+/// and the rest of media/layer.glsl.
+[[nodiscard]] std::vector<ShaderPiece> LayerTexts();
 
 /// Binding points of the data of media.
 struct MediaUnits {

@@ -6,21 +6,17 @@
 namespace alpenglow::viewer {
 
 std::vector<ShaderPiece> MediaTexts(const MediaKind& kind) {
-  return kind.IsEmpty() ? std::vector{ViewerPiece("viewer/shaders/media/none.glsl")}
-                        : LayerTexts(*kind.layer);
+  return kind.has_layer ? LayerTexts() : std::vector{ViewerPiece("viewer/shaders/media/none.glsl")};
 }
 
 SceneMedia::SceneMedia(const LocalMedia& media, const LayerMapSize& size, const MediaUnits& units)
     : media_(std::make_shared<const LocalMedia>(media.Only(false, true))) {
-  if (kind().IsEmpty()) return;
+  if (!kind().has_layer) return;
   by_sun_.emplace(media_, size, units);
   by_moon_.emplace(media_, size, units);
 }
 
-MediaKind SceneMedia::kind() const {
-  if (!media_->HasLayers()) return {};
-  return {media_->layer()->optics().phase.kind};
-}
+MediaKind SceneMedia::kind() const { return {media_->HasLayers()}; }
 
 double SceneMedia::ExtinctionAt(double altitude_m) const {
   return by_sun_ ? by_sun_->ExtinctionAt(altitude_m) : 0.0;
@@ -53,7 +49,7 @@ const SceneLayer& SceneMedia::Under(LightSource source) const {
 
 void SceneMedia::Bind(const CameraPose& eye, const DistantLight& first,
                       const DistantLight& second) const {
-  if (kind().IsEmpty()) return;
+  if (!kind().has_layer) return;
   Under(first.body).Bind(eye, first, Under(second.body), second);
 }
 

@@ -21,11 +21,11 @@ namespace alpenglow::viewer {
 
 /// The properties of media that shader texts depend on.
 struct MediaKind {
-  std::optional<PhaseKind> layer;  // phase function of the layer; empty: no media
+  bool has_layer = false;
 
-  [[nodiscard]] bool IsEmpty() const { return !layer; }
+  [[nodiscard]] bool IsEmpty() const { return !has_layer; }
   /// Returns the number of textures that a program reads.
-  [[nodiscard]] int Textures(int lights) const { return IsEmpty() ? 0 : 2 * lights; }
+  [[nodiscard]] int Textures(int lights) const { return has_layer ? 2 * lights : 0; }
 };
 
 /// Returns texts for a fragment stage, which follow SharedTexts(): MediaTo(direction, distance_km)

@@ -63,7 +63,8 @@ class GlowingSheet final : public LocalMedium {
   class Lit final : public LitMedium {
    public:
     explicit Lit(const GlowingSheet& sheet) : sheet_(sheet) {}
-    [[nodiscard]] std::unique_ptr<const MediumOnRay> OnRay(const glm::dvec3&) const override {
+    [[nodiscard]] std::unique_ptr<const MediumOnRay> OnRay(const glm::dvec3&,
+                                                           const glm::dvec3&) const override {
       ++sheet_.rays_;
       return std::make_unique<OnOneRay>(sheet_);
     }

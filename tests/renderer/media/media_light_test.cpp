@@ -12,6 +12,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/airlight.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/illumination/sky_moments.h"
 #include "renderer/media/layer_light.h"
@@ -23,6 +24,7 @@
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/noise_grid.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/solved_media.h"
 
 namespace alpenglow::renderer {
@@ -258,6 +260,35 @@ TEST(MediaLight, WhiteFogOverBlackGroundConservesEnergy) {
   }
 }
 
+// The irradiance of a surface above fog is that of the rays that come from the fog.
+TEST(MediaLight, RaysCarryTheLightThatLeavesFog) {
+  Medium medium = MediumPreset("bruneton2017");
+  medium.ground_albedo.assign(3, 0.0);
+  const MediaStage stage(tests::SolvedAsClearAir(medium));
+  const MediaLight lit = stage.Lit({FogMedium(0.02, 60.0)});
+  constexpr double kEye_m = 500.0;
+  const SkyThroughMedia above = lit.SkyOnSurface(kEye_m, -1.0, SkyThroughMedia::Clear(3));
+  const GaussRule& zenith = GaussLegendre(8);
+  const int azimuths = tests::ScaledDown(32, 8);
+  Spectrum flux(3);
+  for (std::size_t i = 0; i < zenith.node.size(); ++i) {
+    for (int k = 0; k < azimuths; ++k) {
+      const double azimuth = 2.0 * kPi * (k + 0.5) / azimuths, mu = zenith.node[i];
+      const double sine = std::sqrt(1.0 - mu * mu);
+      const glm::dvec3 direction(sine * std::cos(azimuth), sine * std::sin(azimuth), -mu);
+      const MarchedLight light = lit.Along({0.0, 0.0, kEye_m}, direction, 4000.0, nullptr);
+      flux =
+          flux + static_cast<float>(2.0 * kPi / azimuths * zenith.weight[i] * mu) * light.radiance;
+    }
+  }
+  for (std::size_t band = 0; band < 3; ++band) {
+    const double expected =
+        static_cast<double>(above.added[band] * stage.light.source.irradiance[band]);
+    EXPECT_NEAR(static_cast<double>(flux[band]) / expected, 1.0, 0.05)
+        << "the air takes up to 2 %, the widest rays end below the fog or are long";
+  }
+}
+
 /// A kind of body that only this test has: density 1 throughout.
 class PlainBody final : public LocalBody {
  public:
@@ -390,7 +421,7 @@ TEST(LayerLight, IsNowhereNegative) {
       for (const double z : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const glm::dvec3 look(std::sqrt(1.0 - z * z), 0.0, z);
         // Sunlight behind an optically thick wall: only the glow is left.
-        const LayerLight::Scattered light = lit.At(lit.LookAlong(look), height_m, sun, sun, 30.0);
+        const LayerLight::Glow light = lit.GlowAt(lit.LookAlong(look), height_m);
         const Spectrum ground = lit.OnSurface(height_m, z);
         for (std::size_t band = 0; band < 3; ++band) {
           EXPECT_GE(light.of_sun[band], 0.0F) << g << " " << height_m << " " << z;
@@ -398,6 +429,31 @@ TEST(LayerLight, IsNowhereNegative) {
           EXPECT_GE(ground[band], 0.0F) << g << " " << height_m << " " << z;
         }
       }
+    }
+  }
+}
+
+// Fog in a valley can be a million deep below the mountains. Above it, light of the fog and light of the
+// sky meet at the horizontal.
+TEST(LayerLight, IsContinuousAcrossTheHorizontal) {
+  const MediaStage& stage = TheStage();
+  const ExponentialLayer layer(
+      {1000.0, 60.0, stage.medium.planet_radius_m, 120e3, std::optional(200.0)}, Optics(0.02, 1.0));
+  Spectrum sun(3);
+  std::ranges::fill(sun.values(), 0.8F);
+  const LayerLight lit(layer, stage.air.multiple_scattering(), Unrefracted(kToSun), sun);
+  const double azimuth = std::atan2(kToSun.y, kToSun.x);
+  const auto glow = [&](double height_m, double z) {
+    const double level = std::sqrt(1.0 - z * z);
+    return lit.GlowAt(lit.LookAlong({level * std::cos(azimuth), level * std::sin(azimuth), z}),
+                      height_m);
+  };
+  for (const double height_m : {1000.0, 1200.0, 1500.0}) {
+    const LayerLight::Glow below = glow(height_m, -1e-3), above = glow(height_m, 1e-3);
+    for (std::size_t band = 0; band < 3; ++band) {
+      // Light changes by at most its whole over 0.06.
+      EXPECT_NEAR(below.of_sky[band], above.of_sky[band], 0.05F * above.of_sky[band]) << height_m;
+      EXPECT_NEAR(below.of_sun[band], above.of_sun[band], 0.05F * above.of_sun[band]) << height_m;
     }
   }
 }

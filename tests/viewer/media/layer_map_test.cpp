@@ -85,7 +85,7 @@ struct BothLayers {
   [[nodiscard]] std::vector<float> OnGpu(const std::string& expression,
                                          const std::vector<tests::Arguments<float>>& points) const {
     std::vector<ShaderPiece> pieces = SharedTexts();
-    for (const ShaderPiece& piece : LayerTexts(map.phase.kind)) pieces.push_back(piece);
+    for (const ShaderPiece& piece : LayerTexts()) pieces.push_back(piece);
     return tests::EvaluateOnGpu(pieces, expression, points, [&](const ShaderProgram& program) {
       painter.Connect(program);
       painter.Bind(map, map.eye, painter, map.eye);
@@ -193,8 +193,8 @@ TEST_F(LayerOnGpu, LeavesAsMuchLightOnTheGroundAsTheRenderer) {
   const std::vector<float> added = both.OnGpu("MediaOnSurface(a[0], a[1])[1]", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double altitude = 1000.0 * double{points[i][0]};
-    const SkyThroughMedia truth = both.renderer.SkyOnSurface(
-        altitude, double{points[i][1]}, SkyThroughMedia::Clear(3));
+    const SkyThroughMedia truth =
+        both.renderer.SkyOnSurface(altitude, double{points[i][1]}, SkyThroughMedia::Clear(3));
     EXPECT_NEAR(double{sun[i]}, double{both.renderer.BeamLeft({0.0, 0.0, altitude}, kToSun)[1]},
                 1e-3);
     EXPECT_NEAR(double{sky[i]}, double{truth.left[1]}, 1e-4);

@@ -149,8 +149,7 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   std::vector<ShaderPiece> in_fog =
       WithViewerPieces(SharedTexts(), {"viewer/shaders/view/block.glsl"});
   in_fog.push_back(single);
-  for (ShaderPiece& piece : MediaTexts({PhaseKind::kHenyeyGreenstein}))
-    in_fog.push_back(std::move(piece));
+  for (ShaderPiece& piece : MediaTexts({.has_layer = true})) in_fog.push_back(std::move(piece));
   ExpectAccepted(ShaftPassTexts(std::move(in_fog), true), "shafts/shafts.frag.glsl");
   constexpr auto kSurface = LandDrawn::kSurface;
   const std::vector<LandProgramKind> kinds{{kSurface, false, false, false, false},
@@ -226,7 +225,7 @@ TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
     const SceneLamps lamps(scene, LoadGround(scene), scene.medium);
     const LampPainter painter(lamps, kMediumLamps, {});
     const GroundMaterial material(scene.ground, nullptr, scene.medium.wavelengths_nm);
-    const MediaKind media = with_fog ? MediaKind{PhaseKind::kHenyeyGreensteinDraine} : MediaKind{};
+    const MediaKind media{with_fog};
     for (const auto pass : {PictureStage::Pass::kLand, PictureStage::Pass::kSky,
                             PictureStage::Pass::kUnoccludedSky, PictureStage::Pass::kDisks}) {
       for (const PictureStage& of_lights : StagesOfLights()) {
@@ -269,7 +268,7 @@ struct SceneOfTextures {
       : scene(LampScene(is_heavy)),
         lamps(scene, LoadGround(scene), scene.medium),
         painter(lamps, kMediumLamps, {}),
-        media(is_heavy ? MediaKind{PhaseKind::kHenyeyGreensteinDraine} : MediaKind{}),
+        media{is_heavy},
         material(CoverOf(is_heavy), nullptr, scene.medium.wavelengths_nm) {}
 
   [[nodiscard]] static GroundCover CoverOf(bool is_heavy) {

@@ -3,6 +3,8 @@
 // the layer: LayerBlock of scene_layer.h. Frame: east, north, up at the eye. Lengths are in
 // kilometres; light is per unit solar irradiance. The layer is grey.
 #define MEDIA_STRETCHES 4
+#define LAYER_SURFACES 2  // first rows of layer_surface_map; the phase function follows, row after row
+#define LAYER_QUANTITIES 6.0  // of the map: light scattered once, in four parts, glow, light of the sky
 
 const float kOutOfMedia_km = 1e3;  // length of rays that hit nothing
 
@@ -11,9 +13,8 @@ layout(std140) uniform Layer {
                      // the air
   vec4 layer_eye;  // altitude of the eye; radius of the planet; vertical optical depth of the layer;
                    // factor of optical depths without the forward peak
-  vec4 layer_sun;  // unit vector; g of the lobe that scatters the forward peak's light
-  vec4 layer_phase;     // g, g of the second lobe, its weight, alpha
-  vec4 layer_map_size;  // elevations, azimuths, depths
+  vec4 layer_sun;       // unit vector
+  vec4 layer_map_size;  // elevations, azimuths, depths, angles of the phase function
   vec4 layer_other_sun;  // as layer_sun, of the second light
 };
 
@@ -72,9 +73,10 @@ struct MediaAlong {
   vec4 radiance;  // of sun and sky, scattered by the layer [1/sr]
 };
 
-// Returns the texture coordinates for one quantity of the map.
-vec3 LayerPlace(vec3 direction, float taken) {
-  float whole = 1.0 - exp(-LayerDepthOfRay(direction));
+// Returns the texture coordinates for the first quantity of the map.
+// @param scale  of optical depths: whether the layer's forward peak removes light.
+vec3 LayerPlace(vec3 direction, float taken, float scale) {
+  float whole = 1.0 - exp(-scale * LayerDepthOfRay(direction));
   float share = clamp(taken / max(whole, 1e-9), 0.0, 1.0);
   vec2 level = LAYER_SUN.xy;
   float along = dot(direction.xy, level);
@@ -83,32 +85,56 @@ vec3 LayerPlace(vec3 direction, float taken) {
   float root = sqrt(abs(direction.z));
   float elevation = 0.5 + (direction.z < 0.0 ? -0.5 : 0.5) * root;
   return vec3(TexelFromUnit(elevation, layer_map_size.x), TexelFromUnit(azimuth, layer_map_size.y),
-              0.25 * TexelFromUnit(share, layer_map_size.z));
+              TexelFromUnit(share, layer_map_size.z) / LAYER_QUANTITIES);
 }
 
 vec4 LayerQuantity(vec3 place, float number) {
-  return TEXEL_OF_LIGHT(layer_light_map, other_layer_light_map, place + vec3(0.0, 0.0, 0.25 * number));
+  return TEXEL_OF_LIGHT(layer_light_map, other_layer_light_map, place + vec3(0.0, 0.0, number / LAYER_QUANTITIES));
 }
+
+vec4 LayerPhaseTexel(int index) {
+  int width = textureSize(layer_surface_map, 0).x;
+  return texelFetch(layer_surface_map, ivec2(index % width, LAYER_SURFACES + index / width), 0);
+}
+
+// Returns the phase function at four depths of the forward peak. The angle is exact near the sun.
+vec4 LayerPhases(vec3 direction) {
+  float angle = 2.0 * asin(min(0.5 * length(direction - LAYER_SUN.xyz), 1.0));
+  float last = layer_map_size.w - 1.0;
+  float at = last * sqrt(angle * 0.318309886);
+  int low = int(min(at, last - 1.0));
+  return mix(LayerPhaseTexel(low), LayerPhaseTexel(low + 1), at - float(low));
+}
+
+// Returns the light of the sun that the layer scatters once.
+// @param depth  its optical depth.
+vec4 LayerSunOnce(vec3 direction, float depth) {
+  float taken = 1.0 - exp(-layer_eye.w * depth);
+  vec3 place = LayerPlace(direction, taken, layer_eye.w);
+  vec4 phases = LayerPhases(direction);
+  return taken * (phases.x * LayerQuantity(place, 0.0) + phases.y * LayerQuantity(place, 1.0) +
+                  phases.z * LayerQuantity(place, 2.0) + phases.w * LayerQuantity(place, 3.0));
+}
+
+// Returns the transmittance of an optical depth without the forward peak, and its inverse.
+float MediaSunLeft(float depth) { return exp(-layer_eye.w * depth); }
+float MediaSunDepth(float left) { return -log(max(left, 1e-30)) / layer_eye.w; }
 
 // Returns the scattered light of the sun alone, above ground without shadows. Terrain shadows
 // remove the light that comes from shadowed stretches of the ray.
 vec4 MediaSunTo(vec3 direction, float distance_km) {
-  float taken = 1.0 - MediaTransmittance(direction, distance_km);
-  vec3 place = LayerPlace(direction, taken);
-  float cosine = dot(direction, LAYER_SUN.xyz);
-  return taken * (LAYER_PHASE(cosine, layer_phase) * LayerQuantity(place, 0.0) +
-                  PhaseHenyeyGreenstein(cosine, LAYER_SUN.w) * LayerQuantity(place, 1.0) +
-                  LayerQuantity(place, 2.0));
+  float depth = MediaDepthTo(direction, distance_km);
+  float taken = 1.0 - exp(-depth);
+  return LayerSunOnce(direction, depth) +
+         taken * LayerQuantity(LayerPlace(direction, taken, 1.0), 4.0);
 }
 
 MediaAlong MediaTo(vec3 direction, float distance_km) {
-  float left = MediaTransmittance(direction, distance_km);
-  vec3 place = LayerPlace(direction, 1.0 - left);
-  float cosine = dot(direction, LAYER_SUN.xyz);
-  vec4 source = LAYER_PHASE(cosine, layer_phase) * LayerQuantity(place, 0.0) +
-                PhaseHenyeyGreenstein(cosine, LAYER_SUN.w) * LayerQuantity(place, 1.0) +
-                LayerQuantity(place, 2.0) + LayerQuantity(place, 3.0);
-  return MediaAlong(vec4(left), (1.0 - left) * source);
+  float depth = MediaDepthTo(direction, distance_km);
+  float left = exp(-depth);
+  vec3 place = LayerPlace(direction, 1.0 - left, 1.0);
+  vec4 glow = LayerQuantity(place, 4.0) + LayerQuantity(place, 5.0);
+  return MediaAlong(vec4(left), LayerSunOnce(direction, depth) + (1.0 - left) * glow);
 }
 
 // Returns the distance at which a layer around the eye reaches an optical depth, assuming a flat ground.
@@ -225,7 +251,8 @@ float SkyLeftByMedia(float h) { return exp(-layer_eye.w * LayerDepthAbove(h) * 1
 vec4 MediaOnSurface(float h, float cos_up) {
   float unit = sqrt(sqrt(LayerDepthAbove(h) / max(layer_eye.z, 1e-9)));
   float x = TexelFromUnit(unit, float(textureSize(layer_surface_map, 0).x));
-  vec4 level = TEXEL_OF_LIGHT(layer_surface_map, other_layer_surface_map, vec2(x, 0.25));
-  vec4 upright = TEXEL_OF_LIGHT(layer_surface_map, other_layer_surface_map, vec2(x, 0.75));
+  float row = 1.0 / float(textureSize(layer_surface_map, 0).y);
+  vec4 level = TEXEL_OF_LIGHT(layer_surface_map, other_layer_surface_map, vec2(x, 0.5 * row));
+  vec4 upright = TEXEL_OF_LIGHT(layer_surface_map, other_layer_surface_map, vec2(x, 1.5 * row));
   return max(level + (1.0 - cos_up) * upright, vec4(0.0));
 }

@@ -11,8 +11,8 @@ vec4 MarchedMediaShade(vec3 direction, float distance_km) {
   ShadeRay ray = ShadeRayOf(direction);
   vec2 stretch = ShadeStretch(ray, 1e3 * distance_km);
   int steps = stretch.x < stretch.y ? kMediaSteps * shade_pieces : 0;
-  float from = MediaTransmittance(direction, 1e-3 * stretch.x);
-  float to = MediaTransmittance(direction, 1e-3 * stretch.y);
+  float from = MediaSunLeft(MediaDepthTo(direction, 1e-3 * stretch.x));
+  float to = MediaSunLeft(MediaDepthTo(direction, 1e-3 * stretch.y));
   float whole = MediaDepthTo(direction, distance_km);
   vec4 shaded = vec4(0.0);
   vec4 light = MediaSunTo(direction, 1e-3 * stretch.x);
@@ -20,8 +20,8 @@ vec4 MarchedMediaShade(vec3 direction, float distance_km) {
   for (int step = 1; step <= steps; ++step) {
     float even = float(step) / float(steps);
     float left = mix(from, to, even * even);
-    float depth = -log(max(left, 1e-30));
-    float end_km = step < steps ? MediaDistanceOf(direction, depth, whole, distance_km)
+    float end_km = step < steps
+                       ? MediaDistanceOf(direction, MediaSunDepth(left), whole, distance_km)
                                 : 1e-3 * stretch.y;
     end_km = clamp(end_km, 1e-3 * stretch.x, 1e-3 * stretch.y);
     vec2 next = OverShade(ray, 1e3 * end_km);
