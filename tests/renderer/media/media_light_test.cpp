@@ -15,6 +15,7 @@
 #include "atmosphere/math/numerics.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/illumination/sky_moments.h"
+#include "renderer/layers/layer_field.h"
 #include "renderer/media/layer_light.h"
 #include "renderer/media/local_volume.h"
 #include "renderer/picture/render.h"
@@ -286,6 +287,44 @@ TEST(MediaLight, RaysCarryTheLightThatLeavesFog) {
         static_cast<double>(above.added[band] * stage.light.source.irradiance[band]);
     EXPECT_NEAR(static_cast<double>(flux[band]) / expected, 1.0, 0.05)
         << "the air takes up to 2 %, the widest rays end below the fog or are long";
+  }
+}
+
+// Fog over a round planet without air is a plane layer, from a thin bank to the filled valley.
+TEST(MediaLight, FogWithoutAirIsThePlaneLayer) {
+  Medium medium = tests::WithoutAir(MediumPreset("bruneton2017"));
+  medium.ground_albedo.assign(3, 0.2);
+  const MediaStage stage(tests::SolvedAsClearAir(medium));
+  for (const double base_m : {0.0, 200.0, 1000.0}) {
+    const LayerShape shape{base_m, 60.0, medium.planet_radius_m, medium.atmosphere_height_m,
+                           std::optional(0.0)};
+    MediumOptics optics = Optics(0.02, 1.0);
+    optics.phase = DropletPhase(14.0);
+    const auto fog = std::make_shared<const ExponentialLayer>(shape, optics);
+    const double depth = 0.02 * fog->ColumnAbove(0.0);
+    std::vector<double> chi = LegendreCoefficients(optics.phase, 1500);
+    chi[0] = 1.0;
+    const LayerStack plane({{depth, 1.0, chi}}, 0.2, tests::ScaledDown(40, 24));
+    const LayerField truth = LayerField::UnderSun(plane, kToSun.z);
+    const MediaLight lit = stage.Lit({fog});
+    const double sun_azimuth = std::atan2(kToSun.y, kToSun.x);
+    for (const double down : {0.2, 0.5, 0.9}) {
+      for (const double azimuth : {0.0, 1.5, 3.0}) {
+        const double level = std::sqrt(1.0 - down * down);
+        const glm::dvec3 look(level * std::cos(sun_azimuth + azimuth),
+                              level * std::sin(sun_azimuth + azimuth), -down);
+        const MarchedLight light =
+            lit.Along({0.0, 0.0, base_m + 900.0}, look, (base_m + 900.0) / down, nullptr);
+        const double of_ground = 0.2 / kPi *
+                                 (truth.Fluxes(depth).down + truth.Fluxes(depth).direct) *
+                                 std::exp(-depth / down);
+        const double expected = truth.Radiance(0.0, {down, azimuth}) - of_ground;
+        EXPECT_NEAR(
+            static_cast<double>(light.radiance[0] / stage.light.source.irradiance[0]) / expected,
+            1.0, 0.02)
+            << base_m << " " << down << " " << azimuth << ": " << depth;
+      }
+    }
   }
 }
 
