@@ -680,6 +680,7 @@ const std::vector<ChangedKey>& ChangedVolumes() {
       {kVolume, "albedo = 0.9", "albedo = 0.9\ntemperature_k = 1500"},
       {kVolume, "", "g = 0.5"},
       {kVolume, "", "droplet_diameter_um = 16"},
+      {kVolume, "", "orders = 'single'"},
       {kVolume, "grid_size = [2, 2, 3]\ngrid = 'one'", "grid_size = [2, 3, 2]\ngrid = 'one'"},
       {kVolume, "grid_size = [2, 2, 3]\ngrid = 'one'", "grid_size = [2, 2, 3]\ngrid = 'two'"},
       {kBareVolume, "visibility_m = 9", "visibility_m = 10"},
