@@ -47,7 +47,7 @@ std::optional<EnteredSphere> FirstSphereOn(std::span<const SpecularSphere> spher
 
 DividedRay::DividedRay(const SpecularSphere& sphere, const glm::dvec3& point,
                        const glm::dvec3& direction)
-    : sphere_(&sphere) {
+    : sphere_(sphere) {
   normal_ = glm::normalize(point - sphere.centre);
   const glm::dvec3 tangent = direction - glm::dot(direction, normal_) * normal_;
   const double sine = std::min(glm::length(tangent), 1.0);
@@ -72,7 +72,7 @@ LeavingRay DividedRay::Leaving(int order) const {
   const double angle = order * (kPi - 2.0 * refracted_rad_);
   const glm::dvec3 normal = std::cos(angle) * normal_ + std::sin(angle) * along_;
   const glm::dvec3 along = std::cos(angle) * along_ - std::sin(angle) * normal_;
-  return {sphere_->centre + sphere_->radius_m * normal,
+  return {sphere_.centre + sphere_.radius_m * normal,
           std::cos(incident_rad_) * normal + std::sin(incident_rad_) * along};
 }
 

@@ -82,7 +82,7 @@ class DividedRay {
   [[nodiscard]] std::optional<int> SampleOrder(double u) const;
 
  private:
-  const SpecularSphere* sphere_;
+  SpecularSphere sphere_;
   glm::dvec3 normal_, along_;
   double incident_rad_, refracted_rad_, reflectance_;
 };

@@ -91,7 +91,7 @@ TEST(CloudFactor, FitsToOtherPathsOfDropletsAreAlike) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     const CloudFactor fitted =
         FitCloudFactor(droplets.field, droplets.gather, droplets.tracer,
-                       {.rays = tests::ScaledDown<std::size_t>(20000, 2000), .seed = seed});
+                       {.rays = tests::ScaledDown<std::size_t>(20000, 10000), .seed = seed});
     for (std::size_t i = 0; i < kCloudFactorNodes; ++i) {
       least.node[i] = seed == 1 ? fitted.node[i] : std::min(least.node[i], fitted.node[i]);
       most.node[i] = seed == 1 ? fitted.node[i] : std::max(most.node[i], fitted.node[i]);

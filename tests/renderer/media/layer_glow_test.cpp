@@ -75,13 +75,13 @@ struct GlowErrors {
 TEST(LayerGlow, RadiancesAndFluxesOfLobesAreThoseOfDoubling) {
   const std::vector<double> cosines{0.15, 0.6, 0.3, 0.9};  // the suns come first
   GlowErrors errors;
-  for (const double g : {0.75, 0.85}) {
+  for (const double g : tests::ScaledDown<std::vector<double>>({0.75, 0.85}, {0.75})) {
     const PhaseFunction lobe = tests::LobeOf(g);
     const LayerBeam beam(lobe, 1.0);
     for (const double depth : {0.5, 2.0, 8.0}) {
       if (tests::kSanitized && depth > 0.5) break;
       const doubling::Stack truth({{depth, 1.0, [&](double nu) { return Phase(lobe, nu); }}}, 0.2,
-                                  {tests::ScaledDown(24, 16), tests::ScaledDown(40, 20), cosines});
+                                  {24, 40, cosines});
       for (const std::size_t sun : {0U, 1U}) {
         const Slab slab{depth, 1.0, 0.2, cosines[sun], lobe};
         const LayerStack stack = StackOf(slab);
