@@ -24,7 +24,8 @@ constexpr double kInfinite_m = std::numeric_limits<double>::infinity();
 constexpr double kLeastCosine = 0.03;
 constexpr double kLeastDepth = 0.1;  // of rays that count
 constexpr double kLeastOfMean = 0.1;
-// Means of fitted factors over fields of cumulus and stratocumulus with suns from 12 to 66 degrees, by node.
+// Means of fitted factors, before WithFlux(), over fields of cumulus and stratocumulus with suns from 12 to
+// 66 degrees, by node (cloud_light_study prints factors).
 constexpr std::array<double, kCloudFactorNodes> kUsualFactor{1.20, 1.33, 1.15, 0.97, 0.92, 0.93};
 // By which factors, relative to the usual ones, are expected to differ from what fits all nodes alike, and from their
 // neighbours. Nodes with little light follow others.

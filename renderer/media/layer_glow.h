@@ -45,7 +45,7 @@ class GlowNodes {
   double last_;  // number of the node at dense_depth_
 };
 
-/// What the solutions of all bands and sources share in one direction.
+/// Values of one direction that the solutions of all bands and sources share.
 class GlowDirection {
  public:
   /// @param stack  of one layer. @param way  in which the light travels; it counts as 1e-6 above the

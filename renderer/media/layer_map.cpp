@@ -163,8 +163,8 @@ class LayerMarch {
     return shared::DistanceDownTo(eye_.z, direction.z, 0.0, radius_m_);
   }
 
-  // Returns steps up to the distance at which MarchMedia takes the layer for opaque, so short that neither the light in
-  // the layer nor its density changes much within one.
+  // Returns steps up to the distance at which MarchMedia takes the layer for opaque. They are so short
+  // that neither the light in the layer nor its density changes much within one.
   [[nodiscard]] std::vector<Step> StepsOf(const glm::dvec3& direction) const {
     constexpr double kDepth = 0.1, kFall = 0.25, kOpaque = 13.9;
     constexpr double kShortest_m = 0.01;

@@ -136,7 +136,7 @@ class VolumeOrders {
   std::vector<std::shared_ptr<const CloudOptics>> optics_;  // [band]
   SpectrumOf<double> extinction_per_m_;
   std::vector<std::shared_ptr<const CloudCells>> cells_;  // from the coarsest to the finest
-  // Of each band, or nothing:
+  // Moments of each band; null where there is no light:
   std::vector<std::shared_ptr<const CloudMoments>> sun_, sky_, own_;
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/axes_across.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/reference/airlight_reference.h"
@@ -74,8 +75,7 @@ const std::vector<DiskPoint>& DiskPoints() {
 std::vector<float> OccludedSunlight(const ShaftView& view, const glm::dvec3& direction,
                                     const Terrain& terrain, std::span<const double> distances_m,
                                     std::size_t first) {
-  const glm::dvec3 side = glm::normalize(glm::cross(view.to_sun, glm::dvec3(0.3, -0.5, 0.8)));
-  const glm::dvec3 up = glm::cross(view.to_sun, side);
+  const auto [side, up] = AxesAcrossOf(view.to_sun);
   const std::vector<DiskPoint>& disk = DiskPoints();
   std::vector<float> light;
   for (std::size_t i = 0; i < distances_m.size(); ++i) {
@@ -137,7 +137,7 @@ void MakeBeam(int i, Lamp& lamp) {
   const double azimuth = 2.0 * kPi * Halton(i, 23);
   const double r = std::sqrt(1.0 - z * z);
   lamp.axis = {r * std::cos(azimuth), r * std::sin(azimuth), z};
-  lamp.side = glm::normalize(glm::cross(lamp.axis, glm::dvec3(0.3, -0.5, 0.8)));
+  lamp.side = AxesAcrossOf(lamp.axis).side;
 }
 
 /// The ray relative to the lamp: its nearest point, and the distance there.

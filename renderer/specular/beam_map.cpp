@@ -126,14 +126,9 @@ double BeamMap::ColumnAt(const Piece& piece, std::size_t medium, double along_m)
 
 SpectrumOf<double> BeamMap::Radiance(const glm::dvec3& origin, const glm::dvec3& direction,
                                      double length_m) const {
-  ScatteredLight light(media_);
-  const BoxRay ray(origin, direction, length_m);
-  const std::optional<RaySpan> span = ray.Within(tree_.Bounds());
-  if (!span || media_.IsEmpty()) return light.Sum();
-  const ColumnsOnRay on_ray(media_, origin, direction, *span);
   const double per_area = 1.0 / (kPi * radius_m_ * radius_m_);
-  std::vector<double> columns_m(media_.all().size());
-  tree_.VisitAlong(ray, [&](std::uint32_t number) {
+  const auto add = [&](std::uint32_t number, const ColumnsOnRay& on_ray,
+                       std::vector<double>& columns_m, ScatteredLight& light) {
     const Piece& piece = pieces_.all[number];
     const PhotonBeam& beam = beams_[piece.beam];
     const auto chord =
@@ -145,8 +140,8 @@ SpectrumOf<double> BeamMap::Radiance(const glm::dvec3& origin, const glm::dvec3&
     const double weight = beam.area_m2 * per_area * (chord->span.end_m - chord->span.begin_m);
     light.Add(
         {origin + middle_m * direction, -glm::dot(beam.direction, direction), weight, columns_m});
-  });
-  return light.Sum();
+  };
+  return LightOfBoxes(tree_, media_, {origin, direction, length_m}, add);
 }
 
 }  // namespace alpenglow::renderer

@@ -10,7 +10,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -61,5 +63,26 @@ class ScatteredLight {
   bool is_grey_;  // bands are alike: the first one is computed
   SpectrumOf<double> sum_;
 };
+
+/// A ray of finite or infinite length. @param direction  unit, away from the origin.
+struct SearchedRay {
+  const glm::dvec3 &origin, &direction;
+  double length_m;
+};
+
+/// Returns the light of beams or points whose boxes a ray meets.
+/// @param add  add(number, columns on the ray, room for a column of each medium, light) adds that of one.
+template <typename Add>
+[[nodiscard]] SpectrumOf<double> LightOfBoxes(const BoxTree& tree, const LocalMedia& media,
+                                              const SearchedRay& ray, const Add& add) {
+  ScatteredLight light(media);
+  const BoxRay in_boxes(ray.origin, ray.direction, ray.length_m);
+  const std::optional<RaySpan> span = in_boxes.Within(tree.Bounds());
+  if (!span || media.IsEmpty()) return light.Sum();
+  const ColumnsOnRay on_ray(media, ray.origin, ray.direction, *span);
+  std::vector<double> columns_m(media.all().size());
+  tree.VisitAlong(in_boxes, [&](std::uint32_t number) { add(number, on_ray, columns_m, light); });
+  return light.Sum();
+}
 
 }  // namespace alpenglow::renderer

@@ -77,14 +77,9 @@ std::vector<Box> PointMap::Boxes() const {
 
 SpectrumOf<double> PointMap::Radiance(const glm::dvec3& origin, const glm::dvec3& direction,
                                       double length_m) const {
-  ScatteredLight light(media_);
-  const BoxRay ray(origin, direction, length_m);
-  const std::optional<RaySpan> span = ray.Within(tree_.Bounds());
-  if (!span || media_.IsEmpty()) return light.Sum();
-  const ColumnsOnRay on_ray(media_, origin, direction, *span);
   const double per_area = 1.0 / (kPi * radius_m_ * radius_m_);
-  std::vector<double> columns_m(media_.all().size());
-  tree_.VisitAlong(ray, [&](std::uint32_t number) {
+  const auto add = [&](std::uint32_t number, const ColumnsOnRay& on_ray,
+                       std::vector<double>& columns_m, ScatteredLight& light) {
     const Point& point = points_.all[number];
     const glm::dvec3 from = point.place - origin;
     const double along_m = glm::dot(from, direction);
@@ -95,8 +90,8 @@ SpectrumOf<double> PointMap::Radiance(const glm::dvec3& origin, const glm::dvec3
       columns_m[m] = on_ray.At(m, along_m) + points_.column_m[number * columns_m.size() + m];
     light.Add(
         {point.place, -glm::dot(point.direction, direction), point.weight * per_area, columns_m});
-  });
-  return light.Sum();
+  };
+  return LightOfBoxes(tree_, media_, {origin, direction, length_m}, add);
 }
 
 }  // namespace alpenglow::renderer

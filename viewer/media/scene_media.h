@@ -23,7 +23,6 @@ namespace alpenglow::viewer {
 struct MediaKind {
   bool has_layer = false;
 
-  [[nodiscard]] bool IsEmpty() const { return !has_layer; }
   /// Returns the number of textures that a program reads.
   [[nodiscard]] int Textures(int lights) const { return has_layer ? 2 * lights : 0; }
 };

@@ -32,7 +32,7 @@ ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
                       "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
                       "#define HAS_MEDIA {}\n#define SKY_BY_PIXEL {}\n#define HAS_NIGHT {}\n",
                       static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,
-                      stage.has_lamps ? 1 : 0, kind.media.IsEmpty() ? 0 : 1,
+                      stage.has_lamps ? 1 : 0, kind.media.has_layer ? 1 : 0,
                       stage.sky_by_pixel ? 1 : 0, stage.has_night ? 1 : 0)};
 }
 
@@ -58,7 +58,7 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   texts.push_back(DefinesOf(kind, stage));
   add(MediaTexts(kind.media));
   // On the ground, the transmittance of sunlight includes that of the media above.
-  if (!kind.media.IsEmpty()) {
+  if (kind.media.has_layer) {
     texts.push_back({"media over the ground",
                      "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * SunLeftByMedia(h, mu))\n"});
   }
@@ -93,7 +93,7 @@ int TexturesOf(const PictureKind& kind, const PictureStage& stage) {
     textures += 1 + lights;
   }
   textures += kind.media.Textures(lights);
-  if (stage.has_shade) textures += kind.media.IsEmpty() ? 1 : 2;
+  if (stage.has_shade) textures += kind.media.has_layer ? 2 : 1;
   if (stage.has_lamps) textures += 6;
   if (stage.has_night && !is_land) textures += 1;
   return textures;
@@ -104,7 +104,7 @@ namespace {
 /// Returns advice on the parts of a scene that need textures; empty if it has none.
 std::string PartsToOmit(const PictureKind& kind) {
   std::vector<std::string> parts;
-  if (!kind.media.IsEmpty()) parts.push_back(fmt::format("[{}]", LayerFields().name));
+  if (kind.media.has_layer) parts.push_back(fmt::format("[{}]", LayerFields().name));
   if (kind.material.HasWater()) parts.push_back("water");
   if (kind.material.HasGloss() && !kind.material.HasWater()) parts.push_back("glossy ground");
   if (kind.material.drape() != nullptr) parts.push_back("the picture on the terrain");

@@ -20,9 +20,9 @@ namespace {
 ShaftPass ConnectedShafts(const PaintedScene& scene) {
   std::vector<ShaderPiece> texts = AirTexts();
   const MediaKind media = scene.media().kind();
-  if (!media.IsEmpty())
+  if (media.has_layer)
     for (ShaderPiece& piece : MediaTexts(media)) texts.push_back(std::move(piece));
-  ShaftPass pass(std::move(texts), !media.IsEmpty());
+  ShaftPass pass(std::move(texts), media.has_layer);
   pass.program().BindBlock("View", kViewBinding);
   AirTextures::Prepare(pass.program(), kAirUnit, kTablesBinding);
   scene.media().Connect(pass.program());

@@ -44,14 +44,6 @@ LocalVolume SmokeBall(const MediumOptics& optics, const glm::dvec3& size_m,
   return {placement, std::nullopt, nullptr, optics};
 }
 
-std::function<Spectrum(const glm::dvec3&)> UniformSky(float radiance) {
-  return [radiance](const glm::dvec3&) {
-    Spectrum sky(1);
-    sky[0] = radiance;
-    return sky;
-  };
-}
-
 /// Light that a body sends to the origin of a ray.
 struct BodyLight {
   double radiance, transmittance;
@@ -78,6 +70,16 @@ BodyLight LightThrough(const LocalVolume& volume, const VolumeOrders& orders, co
 }
 
 const glm::dvec3 kSunOverSmoke = glm::normalize(glm::dvec3(0.7, 0.3, 0.6));
+
+/// Returns unit radiance from all directions. @param emits  whether the body glows.
+VolumeIllumination InUniformSky(bool emits = false) {
+  const auto sky = [](const glm::dvec3&) { return Spectrum(1, 1.0F); };
+  return {.to_sun = kSunOverSmoke,
+          .sun_column_m = nullptr,
+          .sky = sky,
+          .lamps = nullptr,
+          .emits = emits};
+}
 const std::array<CloudRay, 3> kRaysThroughSmoke{{{{-500.0, 3.0, 40.0}, {1.0, 0.0, 0.0}},
                                                  {{10.0, -500.0, 60.0}, {0.0, 1.0, 0.0}},
                                                  {{20.0, 12.0, 900.0}, {0.0, 0.0, -1.0}}}};
@@ -116,22 +118,20 @@ TEST(VolumeOrders, PlumesOfDepth50HaveTheLightOfTracedPaths) {
   }
 }
 
+/// Expects unit light along a ray through a white body in a uniform sky. The residual of the solution is
+/// 0.5 % of the light that enters.
+void ExpectInvisible(const LocalVolume& body, const VolumeOrders& orders, const CloudRay& ray) {
+  const BodyLight light =
+      LightThrough(body, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
+  EXPECT_NEAR(light.radiance + light.transmittance, 1.0, 0.01);
+}
+
 TEST(VolumeOrders, WhiteBodiesInUniformLightAreInvisible) {
   for (const double g : {0.0, 0.5, 0.85}) {
+    SCOPED_TRACE(g);
     const LocalVolume ball = SmokeBall(SmokeOptics(0.05, 1.0, g), {200.0, 140.0, 100.0}, 0.4);
-    const VolumeOrders orders(ball,
-                              {.to_sun = kSunOverSmoke,
-                               .sun_column_m = nullptr,
-                               .sky = UniformSky(1.0F),
-                               .lamps = nullptr,
-                               .emits = false},
-                              kVolumeCells);
-    for (const CloudRay& ray : kRaysThroughSmoke) {
-      const BodyLight light =
-          LightThrough(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
-      EXPECT_NEAR(light.radiance + light.transmittance, 1.0, 0.01)
-          << g << ": the residual of the solution is 0.5 % of the light that enters";
-    }
+    const VolumeOrders orders(ball, InUniformSky(), kVolumeCells);
+    for (const CloudRay& ray : kRaysThroughSmoke) ExpectInvisible(ball, orders, ray);
   }
 }
 
@@ -139,19 +139,10 @@ TEST(VolumeOrders, SmallFlatAndDeepWhiteBodiesAreInvisible) {
   const std::array<glm::dvec3, 3> sizes_m{glm::dvec3(0.01), glm::dvec3(2e5), {400.0, 400.0, 4.0}};
   for (const glm::dvec3& size_m : sizes_m) {
     for (const auto& [depth, g] : {std::pair{1e-6, 0.99}, {100.0, -0.3}, {100.0, 0.85}}) {
+      SCOPED_TRACE(testing::Message() << size_m.x << ", " << depth << ", " << g);
       const LocalVolume ball = SmokeBall(SmokeOptics(depth / size_m.z, 1.0, g), size_m);
-      const VolumeOrders orders(ball,
-                                {.to_sun = kSunOverSmoke,
-                                 .sun_column_m = nullptr,
-                                 .sky = UniformSky(1.0F),
-                                 .lamps = nullptr,
-                                 .emits = false},
-                                512.0);
-      const CloudRay ray{{0.0, 0.0, 3.0 * size_m.z}, {0.0, 0.0, -1.0}};
-      const BodyLight light =
-          LightThrough(ball, orders, ray, kSunOverSmoke, &VolumeOrders::Scattered::sky);
-      EXPECT_NEAR(light.radiance + light.transmittance, 1.0, 0.01)
-          << size_m.x << ", " << depth << ", " << g << ": in uniform light, as above";
+      const VolumeOrders orders(ball, InUniformSky(), 512.0);
+      ExpectInvisible(ball, orders, {{0.0, 0.0, 3.0 * size_m.z}, {0.0, 0.0, -1.0}});
     }
   }
 }
@@ -161,13 +152,7 @@ TEST(VolumeOrders, BodiesAsHotAsTheirSurroundingsAreInvisible) {
   MediumOptics optics = SmokeOptics(0.05, 0.7, 0.6);
   optics.emission_per_m[0] = 0.05 * 0.3;
   const LocalVolume ball = SmokeBall(optics, {200.0, 140.0, 100.0});
-  const VolumeOrders orders(ball,
-                            {.to_sun = kSunOverSmoke,
-                             .sun_column_m = nullptr,
-                             .sky = UniformSky(1.0F),
-                             .lamps = nullptr,
-                             .emits = true},
-                            kVolumeCells);
+  const VolumeOrders orders(ball, InUniformSky(true), kVolumeCells);
   const auto own = static_cast<float>(optics.emission_per_m[0] / orders.extinction_per_m()[0]);
   for (const CloudRay& ray : kRaysThroughSmoke) {
     const BodyLight of_sky =
@@ -250,13 +235,7 @@ TEST(VolumeOrders, PhaseFunctionsThatScatterBackwardsHaveNone) {
 TEST(VolumeOrders, EmptyAndBlackBodiesScatterNothing) {
   for (const double extinction_per_m : {0.0, 1e-12, 0.05}) {
     const LocalVolume ball = SmokeBall(SmokeOptics(extinction_per_m, 0.0, 0.5), glm::dvec3(100.0));
-    const VolumeOrders orders(ball,
-                              {.to_sun = kSunOverSmoke,
-                               .sun_column_m = nullptr,
-                               .sky = UniformSky(1.0F),
-                               .lamps = nullptr,
-                               .emits = false},
-                              1000.0);
+    const VolumeOrders orders(ball, InUniformSky(), 1000.0);
     const VolumeOrders::Look look = orders.LookAlong({1.0, 0.0, 0.0});
     const VolumeOrders::Scattered light = orders.At({{0.0, 0.0, 50.0}, 50.0, 50.0}, look);
     EXPECT_EQ(light.sky[0], 0.0F);

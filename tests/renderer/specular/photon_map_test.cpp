@@ -142,20 +142,25 @@ TEST(BeamMap, BandsHaveTheLightOfTheirOwnMedium) {
   EXPECT_NEAR(both[1], map({0.07}, {0.5}).Radiance(eye, d, kEndless)[0], 1e-9 * both[1]);
 }
 
-/// Returns the errors of the caustic of a ball by 1e5 beams with a radius of half a pixel. Under the
-/// sanitizers the picture and the map are small.
-tests::CausticErrors ErrorsOfBeams(const tests::ThinFog& fog) {
-  tests::CausticView view;
-  if (tests::kSanitized) view = {.columns = 24, .rows = 12};
+/// Returns the errors of the caustic of a ball by a map. The true picture is the mean of several rays a
+/// pixel. Under the sanitizers the picture is small.
+template <typename Map>
+tests::CausticErrors ErrorsOfCaustic(const Map& map, const tests::ThinFog& fog) {
+  const auto view = tests::ScaledDown<tests::CausticView>({}, {.columns = 24, .rows = 12});
   const tests::SphereCaustic cones(1.0, 1.5, 4, tests::ScaledDown(1500, 800), fog);
-  const BeamMap map(BeamsOfBall(tests::ScaledDown(100000, 4000)), tests::FogOf(fog),
-                    0.5 * view.kPixel_m);
   const std::vector<double> truth = tests::CausticPicture(
       view, tests::ScaledDown(3, 2),
       [&](const glm::dvec3& d) { return cones.Radiance(view.eye(), d, view.kEnd_m); });
   const std::vector<double> made = tests::CausticPicture(
       view, 1, [&](const glm::dvec3& d) { return map.Radiance(view.eye(), d, view.kEnd_m)[0]; });
   return tests::ErrorsOf(made, truth);
+}
+
+/// Returns those of 1e5 beams with a radius of half a pixel, and fewer under the sanitizers.
+tests::CausticErrors ErrorsOfBeams(const tests::ThinFog& fog) {
+  const double half_pixel_m = 0.5 * tests::CausticView::kPixel_m;
+  return ErrorsOfCaustic(
+      BeamMap(BeamsOfBall(tests::ScaledDown(100000, 4000)), tests::FogOf(fog), half_pixel_m), fog);
 }
 
 // A fraction of the beams under the sanitizers has five times the noise.
@@ -182,16 +187,9 @@ TEST(BeamMap, ACausticInForwardScatteringFogHasMoreNoise) {
 TEST(PointMap, HasTheMeanLightOfTheCaustic) {
   // Points have more noise than beams: the mean is compared, and the median with a wide radius. A fifth
   // of the points are in the picture, with a standard error of 1 % of their sum.
-  tests::CausticView view;
-  if (tests::kSanitized) view = {.columns = 24, .rows = 12};
   const tests::ThinFog fog{.extinction_per_m = 0.05};
-  const tests::SphereCaustic cones(1.0, 1.5, 4, tests::ScaledDown(1500, 800), fog);
-  const PointMap map(BeamsOfBall(tests::ScaledDown(100000, 10000)), tests::FogOf(fog), 0.1);
-  const std::vector<double> truth = tests::CausticPicture(
-      view, 2, [&](const glm::dvec3& d) { return cones.Radiance(view.eye(), d, view.kEnd_m); });
-  const std::vector<double> made = tests::CausticPicture(
-      view, 1, [&](const glm::dvec3& d) { return map.Radiance(view.eye(), d, view.kEnd_m)[0]; });
-  const tests::CausticErrors errors = tests::ErrorsOf(made, truth);
+  const tests::CausticErrors errors = ErrorsOfCaustic(
+      PointMap(BeamsOfBall(tests::ScaledDown(100000, 10000)), tests::FogOf(fog), 0.1), fog);
   EXPECT_LT(errors.median, tests::ScaledDown(0.06, 0.2));
   EXPECT_LT(std::abs(errors.bias), tests::ScaledDown(0.02, 0.05));
 }

@@ -22,7 +22,7 @@ vec4 MarchedMediaShade(vec3 direction, float distance_km) {
     float left = mix(from, to, even * even);
     float end_km = step < steps
                        ? MediaDistanceOf(direction, MediaSunDepth(left), whole, distance_km)
-                                : 1e-3 * stretch.y;
+                       : 1e-3 * stretch.y;
     end_km = clamp(end_km, 1e-3 * stretch.x, 1e-3 * stretch.y);
     vec2 next = OverShade(ray, 1e3 * end_km);
     vec4 farther = MediaSunTo(direction, end_km);
