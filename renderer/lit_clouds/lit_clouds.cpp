@@ -256,6 +256,13 @@ std::vector<DiffuseStretch> LitClouds::DiffuseInAir(const glm::dvec3& origin,
   return stretches;
 }
 
+LightPastClouds LitClouds::MeanAt(double altitude_m) const {
+  const std::size_t interface = InterfaceAt(altitude_m);
+  return {{sky_left_[interface], sun_added_[interface]},
+          left_on_ground_,
+          static_cast<float>(MeanBeamLeft(altitude_m, layers()))};
+}
+
 SkyThroughMedia LitClouds::SkyAt(std::size_t interface, const glm::dvec3& point) const {
   SkyThroughMedia sky{sky_left_[interface], sun_added_[interface]};
   if (interface == layers()) return sky;

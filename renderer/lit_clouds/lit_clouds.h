@@ -162,6 +162,9 @@ class LitClouds {
   [[nodiscard]] SkyThroughMedia SkyOnSurface(const glm::dvec3& point, double cos_up,
                                              SkyThroughMedia above) const;
 
+  /// Returns the mean light at an altitude, for media there.
+  [[nodiscard]] LightPastClouds MeanAt(double altitude_m) const;
+
   /// Returns the diffuse light in the air along a ray, below, between and above layers, relative to
   /// that of a clear sky.
   [[nodiscard]] std::vector<DiffuseStretch> DiffuseInAir(const glm::dvec3& origin,

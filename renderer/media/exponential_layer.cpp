@@ -40,9 +40,9 @@ double PerigeeOf(const PointOnRay& at, double planet_radius_m) {
   return at.altitude_m - (planet_radius_m + at.altitude_m) * (1.0 - std::sqrt(1.0 - at.mu * at.mu));
 }
 
-/// Returns the altitude of the lowest ground under a layer: that of the terrain, or of the planet
-/// around it if the layer lies wholly below the terrain; no value if there is no layer above the
-/// ground.
+/// Returns the altitude of the lowest ground in a layer, which becomes ever denser downwards: that of
+/// the terrain, or of the planet around it if the layer lies wholly below the terrain; no value if there
+/// is no layer above the ground.
 std::optional<double> BottomOf(const ExponentialLayer& layer, const SceneGround& ground) {
   std::vector<double> lowest_m;
   if (ground.terrain) {
@@ -53,8 +53,7 @@ std::optional<double> BottomOf(const ExponentialLayer& layer, const SceneGround&
   }
   lowest_m.push_back(0.0);
   for (const double lowest : lowest_m) {
-    const double bottom = std::max(layer.base_m(), lowest);
-    if (layer.ColumnAbove(bottom) > 0.0) return bottom;
+    if (layer.ColumnAbove(lowest) > 0.0) return lowest;
   }
   return std::nullopt;
 }
@@ -79,7 +78,9 @@ ExponentialLayer::ExponentialLayer(const LayerShape& shape, MediumOptics optics)
 }
 
 double ExponentialLayer::HeadAltitude() const {
-  return bottom_m() + (std::isinf(shape_.scale_height_m) ? 0.0 : shape_.scale_height_m);
+  if (std::isinf(shape_.scale_height_m)) return bottom_m();
+  const double depth = optics().extinction_per_m[0] * ColumnAbove(bottom_m());
+  return bottom_m() + shape_.scale_height_m * std::max(1.0, std::log(depth));
 }
 
 double ExponentialLayer::AltitudeOf(const glm::dvec3& point) const {

@@ -36,7 +36,7 @@ struct LayerShape {
   double scale_height_m = 0.0;     // > 0; may be infinite
   double planet_radius_m = 0.0;    // the sphere's centre is at (0, 0, -R)
   double top_m = 0.0;              // of the atmosphere
-  std::optional<double> bottom_m;  // of the lowest ground below the layer; empty: the base
+  std::optional<double> bottom_m;  // of the lowest ground in the layer; empty: the base
 };
 
 /// Immutable; safe to use from many threads. Directions are unit vectors.
@@ -47,8 +47,8 @@ class ExponentialLayer final : public LocalMedium {
   [[nodiscard]] double base_m() const { return shape_.base_m; }
   [[nodiscard]] double scale_height_m() const { return shape_.scale_height_m; }
   [[nodiscard]] double bottom_m() const { return shape_.bottom_m.value_or(shape_.base_m); }
-  /// Returns the altitude at which the density is 1/e of that on the lowest ground, or that ground
-  /// if the density is constant.
+  /// Returns the altitude above which the optical depth is 1, or that at which the density is 1/e of
+  /// that on the lowest ground if that is higher; the lowest ground if the density is constant.
   [[nodiscard]] double HeadAltitude() const;
 
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;

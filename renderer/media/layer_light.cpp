@@ -17,6 +17,8 @@ constexpr double kSkyCosine = 0.6;
 /// turns light by a few degrees, and rounds off this edge; closer to it than this sine, light is
 /// interpolated.
 constexpr double kHorizonSine = 0.03;
+/// Deeper layers count as this deep, because densities far below a base overflow.
+constexpr double kDeepest = 1e8;
 
 Spectrum NotNegative(Spectrum light) {
   for (std::size_t band = 0; band < light.size(); ++band) {
@@ -39,22 +41,23 @@ LightWay WayInto(const glm::dvec3& look, const glm::dvec3& to_light) {
 }  // namespace
 
 LayerLight::LayerLight(const ExponentialLayer& layer, const MultipleScattering& diffuse,
-                       const LightDirection& light, const Spectrum& in_air)
+                       const LightDirection& light, const Spectrum& in_air, LightPastClouds past)
     : layer_(layer),
       to_light_(light.seen),
       extinction_per_m_(layer.optics().extinction_per_m[0]),
-      depth_(extinction_per_m_ * layer.ColumnAbove(layer.bottom_m())),
+      depth_(std::min(extinction_per_m_ * layer.ColumnAbove(layer.bottom_m()), kDeepest)),
       albedo_(layer.optics().scattering_per_m[0] / extinction_per_m_),
       nodes_(depth_),
       sky_(diffuse, {0.0, 0.0, 1.0}, light.for_air, {std::max(layer.bottom_m(), 0.0)}),
       all_of_it_(static_cast<std::size_t>(diffuse.options().degree) + 1, 1.0),
       ground_(diffuse.bands()),
-      clear_sky_(diffuse.SkyIrradiance(std::max(layer.bottom_m(), 0.0), sky_.mu_s())) {
+      past_(std::move(past)) {
+  const Spectrum clear = diffuse.SkyIrradiance(std::max(layer.bottom_m(), 0.0), sky_.mu_s());
+  skylight_ = past_.sky.left * clear + past_.sky.added;
   const std::vector<double>& ground_albedo = diffuse.medium().ground_albedo;
   for (std::size_t band = 0; band < ground_.size(); ++band) {
-    ground_[band] =
-        static_cast<float>(ground_albedo[band] / kPi) *
-        (static_cast<float>(std::max(to_light_.z, 0.0)) * in_air[band] + clear_sky_[band]);
+    ground_[band] = static_cast<float>(ground_albedo[band] / kPi) *
+                    (static_cast<float>(std::max(to_light_.z, 0.0)) * in_air[band] + clear[band]);
   }
   sky_ = sky_.WithoutGround(ground_);
   // This is the cosine for which the plane layer is as deep towards the sun as the layer over a
@@ -63,17 +66,18 @@ LayerLight::LayerLight(const ExponentialLayer& layer, const MultipleScattering& 
                        layer.ColumnAbove(layer.bottom_m());
   for (std::size_t band = 0; band < ground_.size(); ++band) {
     bands_.push_back(Solved(band, std::clamp(1.0 / slant, 1e-3, 1.0),
-                            static_cast<double>(in_air[band]),
-                            static_cast<double>(clear_sky_[band]), ground_albedo[band]));
+                            static_cast<double>(in_air[band]), static_cast<double>(skylight_[band]),
+                            ground_albedo[band]));
   }
 }
 
 Spectrum LayerLight::SkyFrom(const LightWay& way) const {
   const double sine = std::sqrt(std::max(1.0 - way.mu * way.mu, 0.0));
   const double azimuth = std::atan2(to_light_.y, to_light_.x) + way.azimuth;
-  return NotNegative(
+  const Spectrum clear =
       sky_.Towards({sine * std::cos(azimuth), sine * std::sin(azimuth), -way.mu}, all_of_it_)
-          .front());
+          .front();
+  return NotNegative(past_.sky.left * clear + static_cast<float>(1.0 / kPi) * past_.sky.added);
 }
 
 LayerLight::Band LayerLight::Solved(std::size_t band, double mu_s, double sun, double sky,
@@ -157,15 +161,17 @@ Spectrum LayerLight::OnSurface(double altitude_m, double cos_up) const {
     }
     return sum;
   };
-  // Part of the clear sky, and of the ground below it, is counted as not scattered.
+  // Part of the skylight, and of the light of the ground below it, is counted as not scattered.
   const auto left = static_cast<double>(SkyLeft(altitude_m));
   Spectrum irradiance(bands_.size());
   for (std::size_t band = 0; band < bands_.size(); ++band) {
     const Band& lit = bands_[band];
-    const double clear = from_above * static_cast<double>(clear_sky_[band]) +
-                         from_below * kPi * static_cast<double>(ground_[band]);
+    const double unscattered =
+        from_above * static_cast<double>(skylight_[band]) +
+        from_below * kPi * static_cast<double>(past_.sky.left[band] * ground_[band]);
+    const double sun = static_cast<double>(past_.sun) * lit.sun;
     irradiance[band] =
-        static_cast<float>(lit.sun * all(lit.of_sun) + lit.sky * all(lit.of_sky) - left * clear);
+        static_cast<float>(sun * all(lit.of_sun) + lit.sky * all(lit.of_sky) - left * unscattered);
   }
   return NotNegative(irradiance);
 }

@@ -16,7 +16,7 @@
 // aureole of droplets 0.1 to 15 degrees from the sun below 0.035, and those of fluxes below 0.0015 of
 // the incident flux (tests/renderer/media/layer_glow_test.cpp). MarchMedia takes a ray for opaque
 // beyond the optical depth 13.9, so that e^(-13.9 s) of a deep layer's first order is missing. The sky
-// over the layer is that on the lowest ground without the layer.
+// over the layer is that on the lowest ground without the layer, past clouds with their mean light.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +29,7 @@
 #include "renderer/media/exponential_layer.h"
 #include "renderer/media/layer_beam.h"
 #include "renderer/media/layer_glow.h"
+#include "renderer/media/lit_medium.h"
 
 namespace alpenglow::renderer {
 
@@ -37,9 +38,9 @@ namespace alpenglow::renderer {
 class LayerLight {
  public:
   /// @param in_air  transmittance of the air at the layer for the light, while it is above the
-  ///   horizon.
+  ///   horizon. @param past  clouds, at the lowest ground.
   LayerLight(const ExponentialLayer& layer, const MultipleScattering& diffuse,
-             const LightDirection& light, const Spectrum& in_air);
+             const LightDirection& light, const Spectrum& in_air, LightPastClouds past);
 
   /// Precomputed values of a ray through the layer.
   struct Look {
@@ -91,7 +92,8 @@ class LayerLight {
   SkyMoments sky_;                 // without the ground
   std::vector<double> all_of_it_;  // of each of its degrees
   Spectrum ground_;                // radiance of the ground under a clear sky
-  Spectrum clear_sky_;             // irradiance of level ground under it
+  LightPastClouds past_;
+  Spectrum skylight_;  // irradiance of level ground by the sky past clouds
   std::vector<Band> bands_;
 };
 

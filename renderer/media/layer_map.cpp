@@ -76,7 +76,7 @@ class LayerMarch {
         radius_m_(air.medium().planet_radius_m),
         eye_(0.0, 0.0, std::max(under.altitude_m, 0.0)),
         light_(layer, air.multiple_scattering(), under.light,
-               SunInAir({0.0, 0.0, layer.HeadAltitude()})),
+               SunInAir({0.0, 0.0, layer.HeadAltitude()}), LightPastClouds::Clear(air.bands())),
         nodes_(light_.beam().peak_scale()) {}
 
   [[nodiscard]] const LayerLight& light() const { return light_; }

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/media/lit_layer.h"
 
+#include <algorithm>
+
 namespace alpenglow::renderer {
 
 LitLayer::LitLayer(const ExponentialLayer& layer, const MediaSources& sources)
     : layer_(layer),
       sources_(sources),
       light_(layer, sources.air.multiple_scattering(), sources.light.direction,
-             sources.SunInAir({0.0, 0.0, layer.HeadAltitude()})) {}
+             sources.SunInAir({0.0, 0.0, layer.HeadAltitude()}),
+             sources.PastClouds(std::max(layer.bottom_m(), 0.0))) {}
 
 double LitLayer::DepthToSun(const glm::dvec3& point) const {
   return layer_.optics().extinction_per_m[0] *

@@ -13,6 +13,14 @@ Spectrum MediaSources::SunInAir(const glm::dvec3& point) const {
          air.BeamLeft(here.altitude_m, here.mu_s_effective);
 }
 
+LightPastClouds MediaSources::PastClouds(double altitude_m) const {
+  return clouds ? clouds(altitude_m) : LightPastClouds::Clear(bands());
+}
+
+LightPastClouds LightPastClouds::Clear(std::size_t bands) {
+  return {SkyThroughMedia::Clear(bands), SkyThroughMedia::Clear(bands).left, 1.0F};
+}
+
 SkyThroughMedia SkyThroughMedia::Clear(std::size_t bands) {
   SkyThroughMedia sky{Spectrum(bands), Spectrum(bands)};
   std::ranges::fill(sky.left.values(), 1.0F);

@@ -3,6 +3,8 @@
 // the light of others, and the light that it sends along a ray (MediumOnRay).
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -19,6 +21,26 @@ namespace alpenglow::renderer {
 /// This switch turns the light that media emit themselves on or off.
 enum class MediaEmission { kOn, kOff };
 
+/// Light of the sky on a surface inside or above layers.
+struct SkyThroughMedia {
+  Spectrum left;   // fraction of the irradiance from a clear sky
+  Spectrum added;  // irradiance from the media, per unit solar irradiance [1]
+
+  /// Returns the light of a clear sky.
+  [[nodiscard]] static SkyThroughMedia Clear(std::size_t bands);
+};
+
+/// Mean light at an altitude below, between or above clouds.
+struct LightPastClouds {
+  SkyThroughMedia sky;  // on a level surface
+  Spectrum ground;      // light from below, relative to that under a clear sky
+  float sun = 1.0F;     // fraction of the beam
+
+  /// Returns the light without clouds.
+  [[nodiscard]] static LightPastClouds Clear(std::size_t bands);
+};
+using CloudsOverMedia = std::function<LightPastClouds(double altitude_m)>;
+
 /// The sources of light in the media of a scene, for one position of the sun. It refers to its parts.
 struct MediaSources {
   const LocalMedia& media;
@@ -27,10 +49,12 @@ struct MediaSources {
   DistantLight light;      // the sun or the moon
   const LampLight* lamps;  // null: none
   MediaEmission emission;
+  CloudsOverMedia clouds;  // null: none
 
   [[nodiscard]] std::size_t bands() const { return media.bands(); }
   /// Returns the transmittance of the air for sunlight at a point.
   [[nodiscard]] Spectrum SunInAir(const glm::dvec3& point) const;
+  [[nodiscard]] LightPastClouds PastClouds(double altitude_m) const;
 };
 
 /// Light of sun and sky on its way to a point of a medium.
@@ -60,15 +84,6 @@ class MediumOnRay {
   /// without attenuation in between, which is that of LitMedium::WideExtinction_per_m.
   /// @param density  at the point, > 0.
   virtual void AddSource(const LightOnPoint& light, double density, Spectrum& sum) const = 0;
-};
-
-/// Light of the sky on a surface inside or above layers.
-struct SkyThroughMedia {
-  Spectrum left;   // fraction of the irradiance from a clear sky
-  Spectrum added;  // irradiance from the media, per unit solar irradiance [1]
-
-  /// Returns the light of a clear sky.
-  [[nodiscard]] static SkyThroughMedia Clear(std::size_t bands);
 };
 
 /// The light in one medium for one position of the sun. Immutable; safe to use from many threads.

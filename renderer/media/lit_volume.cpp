@@ -90,6 +90,7 @@ LitVolume::LitVolume(const LocalBody& volume, const MediaSources& sources)
       chi_(LegendreCoefficients(volume.optics().phase,
                                 sources.air.multiple_scattering().options().degree)),
       sky_(Sky()),
+      past_(sources.PastClouds(sources.geometry.AltitudeOf(volume.Middle()))),
       sun_column_(SunColumns()),
       lamps_(AllLamps()),
       orders_(Orders()),
@@ -131,6 +132,9 @@ Spectrum LitVolume::SkyPastBodies(const glm::dvec3& from) const {
     AddDepth(*medium, medium->Column(volume_.Middle(), from, kEndless), depth);
   }
   Spectrum sky = sky_.Towards(from, all)[1];
+  const bool is_above = glm::dot(from, sources_.geometry.UpAt(volume_.Middle())) >= 0.0;
+  sky = is_above ? past_.sky.left * sky + static_cast<float>(1.0 / kPi) * past_.sky.added
+                 : past_.ground * sky;
   for (std::size_t band = 0; band < sky.size(); ++band)
     sky[band] *= static_cast<float>(std::exp(-depth[band]));
   return sky;
@@ -391,7 +395,9 @@ class LitVolume::OnOneRay final : public MediumOnRay {
     SpectrumOf<double> depth = light.depth;
     lit_.AddDepthToLight(light.point, lit_.sources_.light.direction.seen, depth);
     const Spectrum sun = light.LitThrough(depth) * light.in_air;
-    const Spectrum sky = lit_.sky_.At(sky_, light.altitude_m);
+    // The phase function counts as even for the light of clouds, which fills half of all directions.
+    const Spectrum sky = lit_.past_.sky.left * lit_.sky_.At(sky_, light.altitude_m) +
+                         static_cast<float>(0.5 / kPi) * lit_.past_.sky.added;
     const glm::dvec3 unit = lit_.volume_.UnitFromFrame(light.point);
     const Spectrum& irradiance = lit_.sources_.light.irradiance;
     for (std::size_t band = 0; band < sum.size(); ++band) {

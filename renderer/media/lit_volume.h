@@ -83,8 +83,8 @@ class LitVolume final : public LitMedium {
   [[nodiscard]] std::unique_ptr<const VolumeOrders> Orders() const;
   [[nodiscard]] std::vector<LampBeam> LampBeams(const glm::dvec3& point, std::size_t band,
                                                 double least_m) const;
-  /// Returns the sky's radiance from a direction at the middle of the volume past other bodies, per
-  /// unit solar irradiance [1/sr].
+  /// Returns the sky's radiance from a direction at the middle of the volume past clouds and other
+  /// bodies, per unit solar irradiance [1/sr].
   [[nodiscard]] Spectrum SkyPastBodies(const glm::dvec3& from) const;
   /// Adds the light of a lamp that the volume scatters along a direction once.
   void AddLamp(const VolumeLamp& seen, const glm::dvec3& direction, const LightOnPoint& light,
@@ -95,6 +95,7 @@ class LitVolume final : public LitMedium {
   Spectrum scattering_per_m_, emission_per_m_;
   std::vector<double> chi_;
   SkyMoments sky_;
+  LightPastClouds past_;                  // at the middle
   std::optional<VolumeGrid> sun_column_;  // [m], of volumes with Samples()
   std::vector<VolumeLamp> lamps_;
   std::unique_ptr<const VolumeOrders> orders_;  // null: the first order alone

@@ -156,8 +156,9 @@ class Sources {
 
 struct MediaLight::State {
   State(LocalMedia of, const SceneGeometry& geometry, const SolvedAir& air, const Lighting& light,
-        const LampLight* lamps, MediaEmission emission)
-      : media(std::move(of)), sources{media, geometry, air, light.source, lamps, emission} {
+        const LampLight* lamps, MediaEmission emission, CloudsOverMedia clouds)
+      : media(std::move(of)), sources{media,    geometry,         air, light.source, lamps,
+                                      emission, std::move(clouds)} {
     for (const auto& medium : media.all()) {
       lit.push_back(medium->LitBy(sources));
       extinction_per_m.push_back(
@@ -172,8 +173,10 @@ struct MediaLight::State {
 };
 
 MediaLight::MediaLight(LocalMedia media, const SceneGeometry& geometry, const SolvedAir& air,
-                       const Lighting& light, const LampLight* lamps, MediaEmission emission)
-    : state_(std::make_unique<State>(std::move(media), geometry, air, light, lamps, emission)) {}
+                       const Lighting& light, const LampLight* lamps, MediaEmission emission,
+                       CloudsOverMedia clouds)
+    : state_(std::make_unique<State>(std::move(media), geometry, air, light, lamps, emission,
+                                     std::move(clouds))) {}
 MediaLight::~MediaLight() = default;
 
 const LocalMedia& MediaLight::media() const { return state_->media; }

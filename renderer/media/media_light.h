@@ -26,10 +26,10 @@ namespace alpenglow::renderer {
 /// Refers to geometry, air, multiply scattered light and lamps.
 class MediaLight {
  public:
-  /// @param lamps  null: none.
+  /// @param lamps, clouds  null: none.
   MediaLight(LocalMedia media, const SceneGeometry& geometry, const SolvedAir& air,
              const Lighting& light, const LampLight* lamps = nullptr,
-             MediaEmission emission = MediaEmission::kOn);
+             MediaEmission emission = MediaEmission::kOn, CloudsOverMedia clouds = nullptr);
   ~MediaLight();
 
   [[nodiscard]] const LocalMedia& media() const;

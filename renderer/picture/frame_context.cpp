@@ -98,8 +98,8 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
     plan_s_ = watch.seconds();
   }
   LightNight();
-  LightMedia();
   LightClouds();
+  LightMedia();
   LightSpheres();
   LightTerrain();
   if (settings_.paths) AddPaths();
@@ -157,12 +157,18 @@ void FrameContext::LightMedia() {
   LocalMedia here = scene_->media().Only(has_bodies, is_lit);
   for (FrameLight& source : lights_) source.media = nullptr;
   if (here.IsEmpty()) return;
+  const auto past_clouds = [&](const FrameLight& source) -> CloudsOverMedia {
+    if (!source.clouds || !Has(Effect::kCloudGlow)) return nullptr;
+    return [clouds = source.clouds](double altitude_m) { return clouds->MeanAt(altitude_m); };
+  };
   lights_.front().media =
       std::make_shared<MediaLight>(std::move(here), geometry, over_ground_->air, light(),
-                                   Has(Effect::kLights) ? lamps_.get() : nullptr);
+                                   Has(Effect::kLights) ? lamps_.get() : nullptr,
+                                   MediaEmission::kOn, past_clouds(lights_.front()));
   for (std::size_t i = 1; i < lights_.size(); ++i) {
     lights_[i].media = std::make_shared<MediaLight>(media()->media(), geometry, over_ground_->air,
-                                                    lights_[i].light, nullptr, MediaEmission::kOff);
+                                                    lights_[i].light, nullptr, MediaEmission::kOff,
+                                                    past_clouds(lights_[i]));
   }
 }
 
@@ -266,8 +272,9 @@ FrameContext FrameContext::Reduced(EffectSet effects) const {
       Effect::kHorizons,  Effect::kBounce,    Effect::kSkylight, Effect::kShadows,
       Effect::kLayerGlow, Effect::kVolumes,   Effect::kClouds,   Effect::kCloudShadows,
       Effect::kCloudGlow, Effect::kMolecules, Effect::kAerosol,  Effect::kOzone};
-  constexpr EffectSet kThatLightMedia{Effect::kLayerGlow, Effect::kVolumes, Effect::kLights,
-                                      Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
+  constexpr EffectSet kThatLightMedia{Effect::kLayerGlow, Effect::kVolumes,   Effect::kLights,
+                                      Effect::kClouds,    Effect::kCloudGlow, Effect::kMolecules,
+                                      Effect::kAerosol,   Effect::kOzone};
   const auto are_alike = [&](EffectSet those) {
     return settings_.effects.And(those) == effects.And(those);
   };
@@ -284,8 +291,8 @@ FrameContext FrameContext::Reduced(EffectSet effects) const {
     if (!effects.Has(Effect::kShafts)) source.shadows = std::make_shared<const TerrainSunlight>();
   }
   if (!effects.Has(Effect::kLights)) frame.plan_ = std::make_shared<LampPlan>();
-  if (!are_alike(kThatLightMedia)) frame.LightMedia();
   frame.LightClouds();
+  if (!are_alike(kThatLightMedia)) frame.LightMedia();
   if (!are_alike(kThatLightMedia)) frame.LightSpheres();
   if (!are_alike(kThatLightTerrain)) frame.LightTerrain();
   frame.AddSmallDisks();

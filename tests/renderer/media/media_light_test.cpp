@@ -455,7 +455,8 @@ TEST(LayerLight, IsNowhereNegative) {
     const ExponentialLayer layer(shape, optics);
     Spectrum sun(3);
     std::ranges::fill(sun.values(), 0.8F);
-    const LayerLight lit(layer, stage.air.multiple_scattering(), Unrefracted(kToSun), sun);
+    const LayerLight lit(layer, stage.air.multiple_scattering(), Unrefracted(kToSun), sun,
+                         LightPastClouds::Clear(3));
     for (const double height_m : {0.0, 10.0, 60.0, 200.0}) {
       for (const double z : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const glm::dvec3 look(std::sqrt(1.0 - z * z), 0.0, z);
@@ -472,6 +473,55 @@ TEST(LayerLight, IsNowhereNegative) {
   }
 }
 
+/// Returns the light of fog along rays up and down.
+std::vector<Spectrum> LightOfFog(const MediumLayer& fog) {
+  const MediaStage& stage = TheStage();
+  Scene scene = stage.scene;
+  scene.layers = {fog};
+  const MediaLight lit(LocalMedia(LayersOf(scene, stage.ground, stage.medium), 3), stage.geometry,
+                       stage.air, stage.light);
+  std::vector<Spectrum> light;
+  for (const double z : {-0.5, 0.1, 0.5, 1.0}) {
+    const glm::dvec3 look(std::sqrt(1.0 - z * z), 0.0, z);
+    const double length_m = z < 0.0 ? 2.0 / -z : std::numeric_limits<double>::infinity();
+    light.push_back(lit.Along({0.0, 0.0, 2.0}, look, length_m, nullptr).radiance);
+  }
+  return light;
+}
+
+// Fixed on 2026-11-30: fog with its base above the ground had the light of a layer that ends at its
+// base, although it is denser below. Half as much light as that of the same fog with its base on the
+// ground, or four times as much.
+TEST(LayerLight, IsThatOfTheSameFogWithAnotherBase) {
+  for (const double base_m : {50.0, 200.0, 600.0}) {
+    const MediumLayer low{0.004 * std::exp(base_m / 100.0), 100.0, 0.0, 1.0, tests::LobeOf(0.8)};
+    const MediumLayer high{0.004, 100.0, base_m, 1.0, tests::LobeOf(0.8)};
+    const auto by_low = LightOfFog(low), by_high = LightOfFog(high);
+    for (std::size_t ray = 0; ray < by_low.size(); ++ray) {
+      for (std::size_t band = 0; band < 3; ++band) {
+        EXPECT_NEAR(by_high[ray][band] / by_low[ray][band], 1.0F, 1e-3F)
+            << base_m << " " << ray << ": the same medium, to the tolerance of the march";
+      }
+    }
+  }
+}
+
+// The deck leaves no sunlight, and a tenth of the clear sky's.
+TEST(LayerLight, FogUnderAGreyDeckIsGrey) {
+  const MediaStage& stage = TheStage();
+  const LightPastClouds deck{{Spectrum(3, 0.1F), Spectrum(3, 0.2F)}, Spectrum(3, 0.3F), 0.0F};
+  const LayerShape shape{0.0, 60.0, stage.medium.planet_radius_m, 120e3, std::nullopt};
+  const ExponentialLayer layer(shape, Optics(0.02, 1.0));
+  const auto of_sky = [&](const LightPastClouds& past) {
+    const LayerLight lit(layer, stage.air.multiple_scattering(), Unrefracted(kToSun), Spectrum(3),
+                         past);
+    return lit.GlowAt(lit.LookAlong({0.8, 0.0, 0.6}), 2.0).of_sky;
+  };
+  const Spectrum blue = of_sky(LightPastClouds::Clear(3)), dull = of_sky(deck);
+  EXPECT_GT(blue[0] / blue[2], 2.0F);
+  EXPECT_LT(dull[0] / dull[2], 1.0F + 0.3F * (blue[0] / blue[2] - 1.0F));
+}
+
 // Fog in a valley can be a million deep below the mountains. Above it, light of the fog and light of the
 // sky meet at the horizontal.
 TEST(LayerLight, IsContinuousAcrossTheHorizontal) {
@@ -480,7 +530,8 @@ TEST(LayerLight, IsContinuousAcrossTheHorizontal) {
       {1000.0, 60.0, stage.medium.planet_radius_m, 120e3, std::optional(200.0)}, Optics(0.02, 1.0));
   Spectrum sun(3);
   std::ranges::fill(sun.values(), 0.8F);
-  const LayerLight lit(layer, stage.air.multiple_scattering(), Unrefracted(kToSun), sun);
+  const LayerLight lit(layer, stage.air.multiple_scattering(), Unrefracted(kToSun), sun,
+                       LightPastClouds::Clear(3));
   const double azimuth = std::atan2(kToSun.y, kToSun.x);
   const auto glow = [&](double height_m, double z) {
     const double level = std::sqrt(1.0 - z * z);
@@ -584,7 +635,7 @@ TEST(LocalMedia, FogBelowTheTerrainLiesOnThePlanetAroundIt) {
     return media.HasLayers() ? std::optional(media.layer()->bottom_m()) : std::nullopt;
   };
   EXPECT_NEAR(bottom(700.0).value(), 800.0, 0.1) << "it reaches over the plateau";
-  EXPECT_EQ(bottom(10.0), 10.0) << "it lies around the plateau";
+  EXPECT_EQ(bottom(10.0), 0.0) << "it lies around the plateau, ever denser down to the ground";
   EXPECT_EQ(bottom(-1000.0), std::nullopt);
 }
 
