@@ -290,7 +290,9 @@ const TomlFields<MediumLayer>& LayerFields() {
        {"scale_height_m", Number(&MediumLayer::scale_height_m, {1.0, 1e5}), "m", "",
         "without the key the density is the same at every height", "25.0"},
        {"base_height_m", Number(&MediumLayer::base_height_m, {kDeepestPlace_m, 1e5}), "m", "",
-        "above the ellipsoid; default: the ground under the camera", "400.0"},
+        "above the ellipsoid, of this visibility; fog below is denser. Default: the ground under "
+        "the camera",
+        "400.0"},
        {"albedo", Number(&MediumLayer::albedo, {0.0, 1.0}), "", "", "", "1.0"},
        {"droplet_diameter_um", Number<MediumLayer>({kSmallestDroplet_um, kLargestDroplet_um}),
         "micrometres", "", "", "15.0"},
