@@ -15,7 +15,7 @@
 #include "atmosphere/lamp/lamp.h"  // LayerLogDensity of the shared text
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
-#include "renderer/media/layer_beam.h"
+#include "renderer/layers/layer_beam.h"
 #include "renderer/media/local_medium.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_ground.h"

@@ -27,7 +27,7 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/sky_moments.h"
 #include "renderer/media/exponential_layer.h"
-#include "renderer/media/layer_beam.h"
+#include "renderer/layers/layer_beam.h"
 #include "renderer/media/layer_glow.h"
 #include "renderer/media/lit_medium.h"
 

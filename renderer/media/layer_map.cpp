@@ -11,7 +11,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/shell.h"
-#include "renderer/media/layer_beam.h"
+#include "renderer/layers/layer_beam.h"
 #include "renderer/media/layer_light.h"
 #include "renderer/surface/scene_geometry.h"
 

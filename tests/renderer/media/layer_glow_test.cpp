@@ -13,7 +13,7 @@
 #include "atmosphere/medium/phase.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/layer.h"
-#include "renderer/media/layer_beam.h"
+#include "renderer/layers/layer_beam.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/quantile.h"
 #include "tests/fixtures/sanitized.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/media/layer_beam.h"
+#include "renderer/layers/layer_beam.h"
 
 #include <algorithm>
 #include <cmath>
