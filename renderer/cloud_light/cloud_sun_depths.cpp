@@ -38,6 +38,10 @@ double CloudSunDepths::Transmittance(const glm::dvec3& point) const {
 
 double CloudSunDepths::MeanTransmittance(double altitude_m) const {
   if (map()) return altitude_m < field_->top_altitude_m() ? map()->MeanTransmittance() : 1.0;
+  return MeanPowerOfTransmittance(altitude_m, 1.0);
+}
+
+double CloudSunDepths::MeanPowerOfTransmittance(double altitude_m, double exponent) const {
   constexpr int kBeams = 4096;
   const CloudLattice& lattice = field_->lattice();
   std::vector<double> left(kBeams);
@@ -45,7 +49,10 @@ double CloudSunDepths::MeanTransmittance(double altitude_m) const {
     const glm::dvec2 place =
         glm::dvec2(lattice.origin_m) +
         glm::dvec2(lattice.size_m()) * glm::dvec2(Halton(i + 1, 2), Halton(i + 1, 3));
-    left[static_cast<std::size_t>(i)] = low_map()->TransmittanceAsAtPlace({place, altitude_m});
+    const glm::dvec3 point(place, altitude_m);
+    const double of_beam =
+        map() ? map()->Transmittance(point) : low_map()->TransmittanceAsAtPlace(point);
+    left[static_cast<std::size_t>(i)] = std::pow(of_beam, exponent);
   });
   return std::accumulate(left.begin(), left.end(), 0.0) / kBeams;
 }

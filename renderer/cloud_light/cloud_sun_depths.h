@@ -56,6 +56,9 @@ class CloudSunDepths {
   [[nodiscard]] double MeanTransmittance() const {
     return MeanTransmittance(field_->base_altitude_m());
   }
+  /// Returns the mean of a power of the transmittance from 4096 places of a plane.
+  /// @param exponent  > 0: the factor on optical depths of a scaled medium.
+  [[nodiscard]] double MeanPowerOfTransmittance(double altitude_m, double exponent) const;
   /// Returns the memory of the map [bytes].
   [[nodiscard]] std::size_t bytes() const;
 

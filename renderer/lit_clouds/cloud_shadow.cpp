@@ -48,11 +48,10 @@ double EdgeHeightFor(double sunlight) {
   return std::lerp(heights[node], heights[node + 1], at - static_cast<double>(node));
 }
 
-CloudShadow::CloudShadow(std::vector<std::shared_ptr<const CloudSunDepths>> suns,
-                         double highest_cloud_m, double planet_radius_m)
-    : suns_(std::move(suns)), highest_cloud_m_(highest_cloud_m), radius_m_(planet_radius_m) {
-  for (const auto& sun : suns_) {
-    mean_transmittance_ *= sun->MeanTransmittance();
+CloudShadow::CloudShadow(std::vector<Layer> layers, double highest_cloud_m, double planet_radius_m)
+    : layers_(std::move(layers)), highest_cloud_m_(highest_cloud_m), radius_m_(planet_radius_m) {
+  for (const auto& [sun, scale] : layers_) {
+    mean_scaled_ *= sun->MeanPowerOfTransmittance(sun->field().base_altitude_m(), scale);
     if (sun->low_sun() != nullptr) steps_ = kUnderLowSun;
   }
 }
@@ -60,14 +59,16 @@ CloudShadow::CloudShadow(std::vector<std::shared_ptr<const CloudSunDepths>> suns
 double CloudShadow::Transmittance(const glm::dvec3& point) const {
   const glm::dvec3 flat = InFlatFrame(point, radius_m_);
   double left = 1.0;
-  for (const auto& sun : suns_) left *= sun->Transmittance(flat);
+  for (const Layer& layer : layers_) left *= layer.sun->Transmittance(flat);
   return left;
 }
 
-double CloudShadow::TransmittanceAround(const glm::dvec3& point) const {
+double CloudShadow::ScaledTransmittance(const glm::dvec3& point, bool is_sharp) const {
   const glm::dvec3 flat = InFlatFrame(point, radius_m_);
   double left = 1.0;
-  for (const auto& sun : suns_) left *= sun->TransmittanceAround(flat);
+  for (const auto& [sun, scale] : layers_) {
+    left *= std::pow(is_sharp ? sun->Transmittance(flat) : sun->TransmittanceAround(flat), scale);
+  }
   return left;
 }
 
@@ -80,9 +81,9 @@ SunlitPath CloudShadow::OnRay(const SunlitPath& path, const glm::dvec3& origin,
   const double begin_m = shaded.front().begin_m, end_m = shaded.back().end_m;
   SunlitPathBuilder builder;
   const auto left_at = [&](double distance_m) {
-    if (distance_m > steps_.reach_m) return mean_transmittance_;
+    if (distance_m > steps_.reach_m) return mean_scaled_;
     const glm::dvec3 point = origin + distance_m * direction;
-    return distance_m > kSharpReach_m ? TransmittanceAround(point) : Transmittance(point);
+    return ScaledTransmittance(point, distance_m <= kSharpReach_m);
   };
   for (const SunlitPiece& piece : path) {
     const double from_m = std::clamp(begin_m, piece.begin_m, piece.end_m);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The shadows of clouds: on the ground, on other media, and as shafts in the air.
 //
-// Depths of all layers (CloudSunDepths) give the transmittance of clouds from a point to the light.
-// Along a ray, it multiplies the light that terrain lets through. A path of sunlight describes a
+// Depths of all layers (CloudSunDepths) give the transmittance T of clouds from a point to the light.
+// Air scatters light that droplets or crystals have turned by a few degrees nearly as it scatters the
+// beam, so that a ray in the air has the scaled transmittance T^s (cloud_optics.h: s = 1 - f w). It
+// multiplies the light that terrain lets through. A path of sunlight describes a
 // partial shade by the height x of the disk over an edge (SunlitPiece); a transmittance T is the
 // height with SunlightOverEdge(x) = T.
 #pragma once
@@ -24,9 +26,12 @@ namespace alpenglow::renderer {
 /// Immutable; safe to use from many threads. Points and rays are in the frame of a scene.
 class CloudShadow {
  public:
-  /// @param suns  of each layer, for one light.
-  CloudShadow(std::vector<std::shared_ptr<const CloudSunDepths>> suns, double highest_cloud_m,
-              double planet_radius_m);
+  /// The depths of a layer for one light.
+  struct Layer {
+    std::shared_ptr<const CloudSunDepths> sun;
+    double scale;  // s
+  };
+  CloudShadow(std::vector<Layer> layers, double highest_cloud_m, double planet_radius_m);
 
   /// Returns the altitude of the highest cloud [m]; 0 without layers.
   [[nodiscard]] double highest_cloud_m() const { return highest_cloud_m_; }
@@ -44,18 +49,19 @@ class CloudShadow {
   /// Samples of a map are means around points beyond this distance.
   static constexpr double kSharpReach_m = 2000.0;
 
-  /// Returns sunlight on a ray behind terrain and clouds, by samples at kByMap or kUnderLowSun.
+  /// Returns sunlight for the air on a ray behind terrain and clouds, by samples at kByMap or kUnderLowSun.
   /// @param path  sunlight behind terrain, within finite distances.
   [[nodiscard]] SunlitPath OnRay(const SunlitPath& path, const glm::dvec3& origin,
                                  const glm::dvec3& direction) const;
 
  private:
-  /// Returns the product of the layers' means around a point.
-  [[nodiscard]] double TransmittanceAround(const glm::dvec3& point) const;
+  /// Returns the scaled transmittance of all layers from a point of the air.
+  /// @param is_sharp  whether it is not a mean around the point.
+  [[nodiscard]] double ScaledTransmittance(const glm::dvec3& point, bool is_sharp) const;
 
-  std::vector<std::shared_ptr<const CloudSunDepths>> suns_;
+  std::vector<Layer> layers_;
   double highest_cloud_m_, radius_m_;
-  double mean_transmittance_ = 1.0;
+  double mean_scaled_ = 1.0;  // transmittance
   Steps steps_ = kByMap;
 };
 

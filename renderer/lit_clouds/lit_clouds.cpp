@@ -119,11 +119,12 @@ LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeom
     shared_.emplace(std::move(*pixels));
     paths = kSharedPaths;
   }
-  std::vector<std::shared_ptr<const CloudSunDepths>> suns;
+  std::vector<CloudShadow::Layer> suns;
   double highest_m = 0.0;
   for (std::size_t i = 0; i < layers(); ++i) {
     // The depths live as long as the solution.
-    suns.emplace_back(clouds_, &Layer(i).sun());
+    peak_scale_.push_back(Layer(i).optics().extinction_scale());
+    suns.push_back({{clouds_, &Layer(i).sun()}, peak_scale_.back()});
     along_rays_.push_back(Layer(i).WithMethod(method, paths));
     highest_m = std::max(highest_m, RangeOf(i).high_m);
   }
@@ -142,6 +143,18 @@ double LitClouds::MeanBeamLeft(double altitude_m, std::size_t of_layer) const {
     if (other != of_layer) left *= Layer(other).sun().MeanTransmittance(altitude_m);
   }
   return left;
+}
+
+double LitClouds::MeanScaledLeft(double altitude_m) const {
+  double left = 1.0;
+  for (std::size_t i = 0; i < layers(); ++i) {
+    left *= Layer(i).sun().MeanPowerOfTransmittance(altitude_m, peak_scale_[i]);
+  }
+  return left;
+}
+
+double LitClouds::AltitudeOf(std::size_t interface) const {
+  return interface < layers() ? RangeOf(interface).low_m : shadow_->highest_cloud_m();
 }
 
 Spectrum LitClouds::MeanBeam(double altitude_m, std::size_t of_layer) const {
@@ -184,10 +197,12 @@ void LitClouds::FindExchange() {
   const Spectrum direct = static_cast<float>(sine) * MeanBeam(0.0, layers());
   const Spectrum clear_direct =
       static_cast<float>(sine * below.visible_fraction) * air_.BeamLeft(0.0, below.mu_s_effective);
+  FindTurned();
+  sky_on_top_ = sky;
   sky_above_.assign(layers(), Spectrum(bands));
   ground_below_ = sky_above_;
-  sky_left_.assign(layers() + 1, Spectrum(bands));
-  diffuse_ = sun_added_ = sky_left_;
+  diffuse_.assign(layers() + 1, Spectrum(bands));
+  added_ = diffuse_;
   left_on_ground_ = Spectrum(bands);
   for (std::size_t band = 0; band < bands; ++band) {
     const double albedo = air_.medium().ground_albedo[band];
@@ -202,23 +217,32 @@ void LitClouds::FindExchange() {
     for (std::size_t i = 0; i < layers(); ++i) {
       sky_above_[i][band] = static_cast<float>(all[i + 1].down / kPi);
       ground_below_[i][band] = static_cast<float>(all[i].up / kPi);
-      sky_left_[i][band] = static_cast<float>(of_sky[i].down);
     }
-    for (std::size_t i = 0; i <= layers(); ++i) {
-      sun_added_[i][band] =
-          static_cast<float>(std::max(all[i].down - of_sky[i].down * from_sky, 0.0));
-    }
-    sky_left_.back()[band] = 1.0F;
     const double on_clear_ground = clear.down + static_cast<double>(clear_direct[band]);
     left_on_ground_[band] = static_cast<float>(
         on_clear_ground > 0.0 ? (all.front().down + on_ground) / on_clear_ground : 1.0);
     for (std::size_t i = 0; i <= layers(); ++i) {
+      added_[i][band] = static_cast<float>(
+          std::max(all[i].down - static_cast<double>(air_left_[i]) * from_sky, 0.0));
       const double left = of_sky[i].down;
+      const double down = std::max(all[i].down - static_cast<double>(turned_[i][band]), 0.0);
       const double change = (left - 1.0) * (intensity[band] - 2.0 * clear.up) +
-                            2.0 * (all[i].down - left * clear.down + all[i].up - clear.up);
+                            2.0 * (down - left * clear.down + all[i].up - clear.up);
       diffuse_[i][band] = static_cast<float>(
           intensity[band] > 0.0 ? std::max(1.0 + change / intensity[band], 0.0) : 1.0);
     }
+  }
+}
+
+void LitClouds::FindTurned() {
+  for (std::size_t i = 0; i <= layers(); ++i) {
+    const double altitude_m = AltitudeOf(i);
+    const double scaled = MeanScaledLeft(altitude_m);
+    const double turned = std::max(scaled - MeanBeamLeft(altitude_m, layers()), 0.0);
+    const LocalLight sun = LocalLightAt(geometry_, {0.0, 0.0, altitude_m}, light_);
+    const double level = turned * sun.visible_fraction * std::max(sun.mu_s_effective, 0.0);
+    air_left_.push_back(static_cast<float>(scaled));
+    turned_.push_back(static_cast<float>(level) * air_.BeamLeft(altitude_m, sun.mu_s_effective));
   }
 }
 
@@ -258,13 +282,16 @@ std::vector<DiffuseStretch> LitClouds::DiffuseInAir(const glm::dvec3& origin,
 
 LightPastClouds LitClouds::MeanAt(double altitude_m) const {
   const std::size_t interface = InterfaceAt(altitude_m);
-  return {{sky_left_[interface], sun_added_[interface]},
+  Spectrum added = added_[interface];
+  for (std::size_t band = 0; band < added.size(); ++band)
+    added[band] = std::max(added[band] - turned_[interface][band], 0.0F);
+  return {{Spectrum(added.size(), air_left_[interface]), added},
           left_on_ground_,
-          static_cast<float>(MeanBeamLeft(altitude_m, layers()))};
+          static_cast<float>(MeanScaledLeft(altitude_m))};
 }
 
 SkyThroughMedia LitClouds::SkyAt(std::size_t interface, const glm::dvec3& point) const {
-  SkyThroughMedia sky{sky_left_[interface], sun_added_[interface]};
+  SkyThroughMedia sky{Spectrum(air_.bands(), air_left_[interface]), added_[interface]};
   if (interface == layers()) return sky;
   const glm::dvec3 flat = InFlatFrame(point, geometry_.radius_m());
   float past_lower = 1.0F, past_all = 1.0F;
@@ -274,9 +301,9 @@ SkyThroughMedia LitClouds::SkyAt(std::size_t interface, const glm::dvec3& point)
     const float past_others = sky_past_[i] > 0.0F ? past_all / sky_past_[i] : 0.0F;
     const float of_sky = past_others * static_cast<float>(here.sky / kPi);
     const float of_sun = past_lower * static_cast<float>(here.sun);
-    for (std::size_t band = 0; band < sky.left.size(); ++band) {
-      sky.left[band] = std::max(sky.left[band] + of_sky, 0.0F);
-      sky.added[band] = std::max(sky.added[band] + of_sun * beams_[i][band], 0.0F);
+    for (std::size_t band = 0; band < sky.added.size(); ++band) {
+      const float more = of_sky * sky_on_top_[band] + of_sun * beams_[i][band];
+      sky.added[band] = std::max(sky.added[band] + more, 0.0F);
     }
     past_lower *= sky_past_[i];
   }

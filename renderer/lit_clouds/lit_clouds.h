@@ -9,7 +9,9 @@
 //   L += T_i A (E_beam sun_i + L_sky sky_i + L_ground ground_i)
 //
 // Skylight is found above all clouds, and light from below on the ground. The air between these and a
-// cloud adds what it adds in a clear sky, times the mean fraction of light that reaches it. Fields of
+// cloud adds what it adds in a clear sky, times the mean fraction of light that reaches it. On the
+// ground that is the fraction of the beam with what clouds turn by a few degrees: air sends light of the
+// beam down, but of diffuse light it takes away nearly as much as it adds. Fields of
 // single clouds take more light from the bright sky near the horizon than from the zenith. Their sky
 // has the mean radiance of a clear one along rays through the field, weighted by what it takes away.
 //
@@ -18,7 +20,8 @@
 //
 //   (T (I' - 2 u') + 2 (d - T d') + 2 u) / I'
 //
-// with the mean fluxes d down and u up at the interface below, between or above layers, the fraction T
+// with the mean fluxes d down, without light that is turned by a few degrees and follows the beam
+// (cloud_shadow.h), and u up at the interface below, between or above layers, the fraction T
 // of skylight there, and without clouds the fluxes d' and u' and the diffuse radiance integrated over
 // all directions I'. Light of clouds and ground counts as even over a hemisphere, and the directions
 // of the light that is scattered are those of the clear sky.
@@ -176,6 +179,8 @@ class LitClouds {
   [[nodiscard]] std::vector<CloudRayPart> PartsOf(const glm::dvec3& origin,
                                                   const PixelRays::Ray& ray, bool by_paths) const;
   void FindExchange();
+  /// Finds the light that layers turn by a few degrees, at each interface.
+  void FindTurned();
   /// Returns the fluxes of each layer in beams. What a layer takes away from a clear sky in addition to
   /// that from an even one counts as if it scattered a beam.
   /// @param sky  irradiance of a clear sky. @param band  of the beams.
@@ -186,6 +191,10 @@ class LitClouds {
   [[nodiscard]] Spectrum MeanBeam(double altitude_m, std::size_t of_layer) const;
   /// Returns the mean fraction of the beam that other layers leave on a plane.
   [[nodiscard]] double MeanBeamLeft(double altitude_m, std::size_t of_layer) const;
+  /// Returns the same of all layers with the light that they turn by a few degrees.
+  [[nodiscard]] double MeanScaledLeft(double altitude_m) const;
+  /// Returns an altitude at an interface.
+  [[nodiscard]] double AltitudeOf(std::size_t interface) const;
   [[nodiscard]] CloudScreen Screen(const CloudRayPart& grey, const glm::dvec3& point) const;
   /// Returns the mean radiance of a clear sky along rays through a layer, weighted by what the layer
   /// takes away, relative to that of an even sky with the same irradiance of a level surface.
@@ -212,6 +221,7 @@ class LitClouds {
 
   std::shared_ptr<const SolvedClouds> clouds_;
   std::vector<CloudLight> along_rays_;  // of each layer, by the method
+  std::vector<double> peak_scale_;      // of each layer: s of cloud_shadow.h
   std::optional<SharedCloudLight> shared_;
   const SceneGeometry& geometry_;
   SolvedAir air_;
@@ -223,9 +233,11 @@ class LitClouds {
   std::vector<Spectrum> sky_on_clouds_;  // SkyOnClouds
   std::vector<float> beam_left_;  // mean fraction of the beam that other layers leave to each
   Spectrum left_on_ground_;       // light on the ground relative to that without clouds
-  /// Light below each interface: per unit skylight from above all layers, and by the sun's beam
-  /// alone, per unit solar irradiance.
-  std::vector<Spectrum> sky_left_, sun_added_;
+  /// Light at each interface: the fraction of the light that the air below sends in a clear sky, what
+  /// layers add to it, and the light that they turn by a few degrees, per unit solar irradiance.
+  std::vector<float> air_left_;
+  std::vector<Spectrum> added_, turned_;
+  Spectrum sky_on_top_;  // irradiance of a clear sky above all layers, per unit solar irradiance
   std::vector<Spectrum> beams_;    // mean ones on each layer, per unit solar irradiance
   std::vector<float> sky_past_;    // transmittance of each layer for skylight
   std::vector<Spectrum> diffuse_;  // factor in the air at each interface

@@ -17,7 +17,7 @@ const glm::dvec3 kBeam = glm::normalize(glm::dvec3(0.6, 0.3, 0.5));
 const CloudShadow& ShadowOfSpheres() {
   static const CloudShadow kShadow = [] {
     static const CloudField field = tests::SphereClouds(0.01);
-    return CloudShadow({std::make_shared<const CloudSunDepths>(field, kBeam)},
+    return CloudShadow({{std::make_shared<const CloudSunDepths>(field, kBeam), 1.0}},
                        field.top_altitude_m(), kSphere_m);
   }();
   return kShadow;
