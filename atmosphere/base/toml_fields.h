@@ -161,6 +161,18 @@ TomlMember<Object> Number(Part Object::*part, double Part::*member,
           },
           [=](const Object& object) { return TomlValue(object.*part.*member); }};
 }
+template <typename Object, typename Part>
+TomlMember<Object> Number(Part Object::*part, std::optional<double> Part::*member,
+                          std::pair<double, double> range) {
+  return {{TomlType::Kind::kNumber, range.first, range.second},
+          [=](const TomlValue& value, Object& object) {
+            object.*part.*member = std::get<double>(value);
+          },
+          [=](const Object& object) -> std::optional<TomlValue> {
+            if (!(object.*part.*member)) return std::nullopt;
+            return TomlValue(*(object.*part.*member));
+          }};
+}
 template <typename Object>
 TomlMember<Object> Number(std::pair<double, double> range) {
   return {{TomlType::Kind::kNumber, range.first, range.second}};

@@ -37,7 +37,9 @@ enum class CloudGenus {
   kCumulus,        ///< heaps of droplets over warm ground
   kStratocumulus,  ///< a low deck of droplets
   kAltocumulus,    ///< small patches of droplets at middle heights
-  kCirrus          ///< streaks of ice crystals
+  kCirrus,         ///< streaks of ice crystals
+  kStratus,        ///< a low layer of droplets that covers the whole sky evenly
+  kCirrostratus    ///< a high layer of ice crystals, likewise
 };
 
 /// A layer of clouds of one genus. Empty values are the usual ones of the genus:
@@ -47,27 +49,33 @@ enum class CloudGenus {
 ///     stratocumulus  0.8     900 m   350 m  100 / cm^3  -          -         8 m/s
 ///     altocumulus    0.6    4000 m   200 m   80 / cm^3  -          -         12 m/s
 ///     cirrus         0.4    8000 m  1200 m  -           40 mg/m^3  35 um     25 m/s
+///     stratus        1       500 m   600 m  200 / cm^3  -          -         5 m/s
+///     cirrostratus   1      7500 m  1000 m  -           15 mg/m^3  35 um     25 m/s
 struct CloudLayer {
   CloudGenus genus = CloudGenus::kCumulus;  ///< see there
-  /// Fraction of the sky with clouds, seen vertically, in [0, 1]; of cumulus in [0, 0.8].
+  /// Fraction of the sky with clouds, seen vertically, in [0, 1]; of cumulus in [0, 0.8]. Stratus and
+  /// cirrostratus have 1.
   std::optional<double> cover = {};
-  /// Altitude, in [0, 11000]; of cirrus in [0, 15000].
+  /// Altitude, in [0, 11000]; of clouds of ice in [0, 15000].
   std::optional<double> base_m = {};
   /// From the base to the highest tops, in [100, 4000].
   std::optional<double> depth_m = {};
-  /// Number of droplets, in [1, 5000]; cirrus has none.
+  /// Number of droplets, in [1, 5000]; clouds of ice have none.
   std::optional<double> droplets_per_cm3 = {};
-  /// Mass of ice, in [1, 1000]; of cirrus alone.
+  /// Mass of ice, in [1, 1000]; of clouds of ice alone.
   std::optional<double> ice_mg_per_m3 = {};
-  /// Effective radius of crystals, in [5, 200]; of cirrus alone.
+  /// Effective radius of crystals, in [5, 200]; of clouds of ice alone.
   std::optional<double> crystal_radius_um = {};
-  /// Layers with the same options and another seed have other clouds.
+  /// Vertical optical depth, in [0, 1000]; of stratus and cirrostratus alone.
+  std::optional<double> optical_depth = {};
+  /// Layers with the same options and another seed have other clouds, but for stratus and
+  /// cirrostratus.
   std::uint32_t seed = 1;
   /// Wind to the east, in [-150, 150]; usually that of the genus.
   std::optional<double> wind_east_m_per_s = {};
   double wind_north_m_per_s = 0.0;  ///< wind to the north, in [-150, 150]
   /// The field repeats to the east and to the north after this length, a multiple of 2560 in
-  /// [2560, 81920].
+  /// [2560, 81920]. Stratus and cirrostratus have no use for it.
   double period_m = 20480.0;
 };
 

@@ -72,6 +72,10 @@ renderer::CloudGenus GenusOf(CloudGenus genus) {
       return renderer::CloudGenus::kAltocumulus;
     case CloudGenus::kCirrus:
       return renderer::CloudGenus::kCirrus;
+    case CloudGenus::kStratus:
+      return renderer::CloudGenus::kStratus;
+    case CloudGenus::kCirrostratus:
+      return renderer::CloudGenus::kCirrostratus;
   }
   throw InputError("layer.genus is no CloudGenus");
 }
@@ -83,12 +87,11 @@ void RefuseIf(bool is_wrong, const char* member, const char* genera) {
 
 void CheckLayer(const renderer::CloudOptions& layer) {
   using Ranges = renderer::CloudRanges;
-  const bool is_cumulus = layer.genus == renderer::CloudGenus::kCumulus;
   const bool is_of_ice = renderer::IsOfIce(layer.genus);
   const auto check = [](double value, const std::pair<double, double>& range, const char* member) {
     RequireIn(value, range, fmt::format("layer.{}", member));
   };
-  check(layer.cover, {0.0, is_cumulus ? renderer::kMostCumulusCover : 1.0}, "cover");
+  check(layer.cover, renderer::CoversOf(layer.genus), "cover");
   check(layer.base_altitude_m,
         {0.0, is_of_ice ? Ranges::kBase_m.second : renderer::kHighestWaterBase_m}, "base_m");
   check(layer.depth_m, Ranges::kDepth_m, "depth_m");
@@ -98,6 +101,7 @@ void CheckLayer(const renderer::CloudOptions& layer) {
   } else {
     check(layer.droplet_number_per_cm3, Ranges::kDroplets_per_cm3, "droplets_per_cm3");
   }
+  if (layer.optical_depth) check(*layer.optical_depth, Ranges::kOpticalDepth, "optical_depth");
   check(layer.wind_m_per_s.x, Ranges::kWind_m_per_s, "wind_east_m_per_s");
   check(layer.wind_m_per_s.y, Ranges::kWind_m_per_s, "wind_north_m_per_s");
   check(layer.period_m, Ranges::kPeriod_m, "period_m");
@@ -108,14 +112,17 @@ renderer::CloudOptions OptionsOf(const CloudLayer& layer) {
   renderer::CloudOptions options = renderer::DefaultCloudOptions(GenusOf(layer.genus));
   const bool is_of_ice = renderer::IsOfIce(options.genus);
   RefuseIf(is_of_ice && layer.droplets_per_cm3, "droplets_per_cm3", "a genus of droplets");
-  RefuseIf(!is_of_ice && layer.ice_mg_per_m3, "ice_mg_per_m3", "cirrus");
-  RefuseIf(!is_of_ice && layer.crystal_radius_um, "crystal_radius_um", "cirrus");
+  RefuseIf(!is_of_ice && layer.ice_mg_per_m3, "ice_mg_per_m3", "a genus of ice");
+  RefuseIf(!is_of_ice && layer.crystal_radius_um, "crystal_radius_um", "a genus of ice");
+  RefuseIf(!renderer::IsPlaneParallel(options.genus) && layer.optical_depth, "optical_depth",
+           "stratus and cirrostratus");
   options.cover = layer.cover.value_or(options.cover);
   options.base_altitude_m = layer.base_m.value_or(options.base_altitude_m);
   options.depth_m = layer.depth_m.value_or(options.depth_m);
   options.droplet_number_per_cm3 = layer.droplets_per_cm3.value_or(options.droplet_number_per_cm3);
   options.ice_mg_per_m3 = layer.ice_mg_per_m3.value_or(options.ice_mg_per_m3);
   options.crystal_radius_um = layer.crystal_radius_um.value_or(options.crystal_radius_um);
+  options.optical_depth = layer.optical_depth;
   options.seed = layer.seed;
   options.wind_m_per_s = {layer.wind_east_m_per_s.value_or(options.wind_m_per_s.x),
                           layer.wind_north_m_per_s};

@@ -10,6 +10,7 @@
 #include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "renderer/cloud_light/plane_parallel_light.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -91,6 +92,12 @@ struct CloudLight::FieldLight {
         sky(solver.Sky()),
         floor(FloorBelow(of, solver.cells(), ground_altitude_m, sky)) {
     if (optics->albedo() < 1.0) ground.emplace(solver.Ground());
+    if (of.IsPlaneParallel()) {
+      plane_parallel = std::make_shared<const PlaneParallelCloud>(of, *optics);
+      sky.up_at_top = plane_parallel->SkyAtTop().up;
+      sky.down_at_base = plane_parallel->SkyAtBase().down;
+      if (ground) ground->down_at_base = sky.up_at_top;  // reciprocity
+    }
   }
 
   /// Returns the fraction of light from below that comes back down through the base.
@@ -108,6 +115,7 @@ struct CloudLight::FieldLight {
   SolvedCloudMoments sky;
   CloudFloor floor;  // of the sky
   std::optional<SolvedCloudMoments> ground;
+  std::shared_ptr<const PlaneParallelCloud> plane_parallel;  // null for other fields
 };
 
 struct CloudLight::SunLight {
@@ -117,8 +125,15 @@ struct CloudLight::SunLight {
         floor(FloorBelow(*light.field, light.solver.cells(), light.ground_altitude_m, moments)),
         gather(*light.field, *light.optics, depths, moments.moments, light.sky.moments,
                light.ground ? &light.ground->moments : nullptr, light.options.gather) {
-    factor = FactorAfter(light, 0);
-    if (light.options.factor.rays > 0 && depths.map() && light.field->lattice().is_periodic) {
+    if (light.plane_parallel) {
+      plane_parallel.emplace(light.plane_parallel, depths);
+      moments.up_at_top = plane_parallel->UpAtTop();
+      moments.down_at_base = plane_parallel->DownAtBase();
+    } else {
+      factor = FactorAfter(light, 0);
+    }
+    if (!plane_parallel && light.options.factor.rays > 0 && depths.map() &&
+        light.field->lattice().is_periodic) {
       const CloudLattice& lattice = light.field->lattice();
       factor = WithFlux(factor, gather,
                         {*light.field, glm::dvec2(lattice.origin_m), glm::dvec2(lattice.size_m()),
@@ -136,6 +151,10 @@ struct CloudLight::SunLight {
   SunLight(const SunLight&) = delete;
   SunLight& operator=(const SunLight&) = delete;
 
+  /// Returns the light of the fast method.
+  [[nodiscard]] CloudRayParts Along(const CloudRay& ray, double length_m) const {
+    return plane_parallel ? plane_parallel->Along(ray, length_m) : gather.Along(ray, length_m);
+  }
   /// Returns the factor for rays that begin after some collisions.
   [[nodiscard]] CloudFactor FactorAfter(const FieldLight& light, int collisions) const {
     CloudFactorOptions options = light.options.factor;
@@ -158,6 +177,7 @@ struct CloudLight::SunLight {
   SolvedCloudMoments moments;
   CloudFloor floor;
   CloudGather gather;  // refers to depths and moments
+  std::optional<PlaneParallelSun> plane_parallel;
   CloudFactor factor;
   CloudGroundIrradiance irradiance;
   mutable std::once_flag hybrid_asked;
@@ -197,7 +217,7 @@ CloudLight CloudLight::WithMethod(CloudLightMethod method, std::optional<int> of
 }
 
 CloudRayLights CloudLight::RadianceByBoth(const CloudRay& ray, double length_m) const {
-  const CloudRayParts parts = sun_light_->gather.Along(ray, length_m);
+  const CloudRayParts parts = sun_light_->Along(ray, length_m);
   const auto over_ground = [&](const ScatteredByPart& light) {
     const CloudGroundIrradiance& irradiance = sun_light_->irradiance;
     const double reflected = light.ground * field_light_->ground_albedo / kPi;
@@ -215,7 +235,7 @@ CloudRayLights CloudLight::RadianceByBoth(const CloudRay& ray, double length_m) 
 }
 
 CloudGroundDifference CloudLight::GroundDifferenceAt(const glm::dvec3& point) const {
-  if (!field_light_->field->lattice().is_periodic) return {};
+  if (!field_light_->field->lattice().is_periodic || field_light_->plane_parallel) return {};
   const glm::dvec2 place(point);
   const CloudFloor &of_sun = sun_light_->floor, &of_sky = field_light_->floor;
   return {of_sun.At(place) - of_sun.mean(), of_sky.At(place) - of_sky.mean()};

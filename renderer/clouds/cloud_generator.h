@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fields of the four genera from options and a time.
+// Fields of all genera from options and a time.
 //
 // The field is byte-identical for the same options and time, on every machine with IEEE arithmetic
 // and for any number of threads. It is seamless across its period. With time the wind carries it

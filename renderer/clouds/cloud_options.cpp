@@ -52,6 +52,20 @@ CloudOptions DefaultCloudOptions(CloudGenus genus) {
       options.ice_mg_per_m3 = 40.0;
       options.wind_m_per_s = {25.0, 0.0};
       break;
+    case CloudGenus::kStratus:
+      options.cover = 1.0;
+      options.base_altitude_m = 500.0;
+      options.depth_m = 600.0;
+      options.droplet_number_per_cm3 = 200.0;
+      options.wind_m_per_s = {5.0, 0.0};
+      break;
+    case CloudGenus::kCirrostratus:
+      options.cover = 1.0;
+      options.base_altitude_m = 7500.0;
+      options.depth_m = 1000.0;
+      options.ice_mg_per_m3 = 15.0;
+      options.wind_m_per_s = {25.0, 0.0};
+      break;
   }
   return options;
 }
@@ -62,9 +76,7 @@ CloudGenus CloudGenusNamed(std::string_view name) {
 
 void CheckCloudOptions(const CloudOptions& options) {
   using Ranges = CloudRanges;
-  const bool is_cumulus = options.genus == CloudGenus::kCumulus;
-  RequireKey("cover", options.cover,
-             {Ranges::kCover.first, is_cumulus ? kMostCumulusCover : Ranges::kCover.second});
+  RequireKey("cover", options.cover, CoversOf(options.genus));
   RequireKey("base", options.base_altitude_m, Ranges::kBase_m);
   RequireKey("depth", options.depth_m, Ranges::kDepth_m);
   if (IsOfIce(options.genus)) {
@@ -74,11 +86,22 @@ void CheckCloudOptions(const CloudOptions& options) {
     RequireKey("base", options.base_altitude_m, {Ranges::kBase_m.first, kHighestWaterBase_m});
     RequireKey("droplets", options.droplet_number_per_cm3, Ranges::kDroplets_per_cm3);
   }
+  if (options.optical_depth) {
+    RequireKey("optical_depth", *options.optical_depth, Ranges::kOpticalDepth);
+    if (!IsPlaneParallel(options.genus))
+      throw InputError("clouds.optical_depth is for stratus and cirrostratus");
+  }
   RequireKey("wind.east", options.wind_m_per_s.x, Ranges::kWind_m_per_s);
   RequireKey("wind.north", options.wind_m_per_s.y, Ranges::kWind_m_per_s);
   CheckPeriod(options.period_m);
 }
 
-double CoveredOpticalDepth(CloudGenus genus) { return genus == CloudGenus::kCirrus ? 0.03 : 0.3; }
+std::pair<double, double> CoversOf(CloudGenus genus) {
+  if (IsPlaneParallel(genus)) return {1.0, 1.0};
+  return {CloudRanges::kCover.first,
+          genus == CloudGenus::kCumulus ? kMostCumulusCover : CloudRanges::kCover.second};
+}
+
+double CoveredOpticalDepth(CloudGenus genus) { return IsOfIce(genus) ? 0.03 : 0.3; }
 
 }  // namespace alpenglow::renderer

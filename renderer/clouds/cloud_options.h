@@ -19,6 +19,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -27,12 +28,14 @@
 
 namespace alpenglow::renderer {
 
-enum class CloudGenus { kCumulus, kStratocumulus, kAltocumulus, kCirrus };
+enum class CloudGenus { kCumulus, kStratocumulus, kAltocumulus, kCirrus, kStratus, kCirrostratus };
 
 inline constexpr EnumNames kCloudGenusNames{{std::pair{CloudGenus::kCumulus, "cumulus"},
                                              {CloudGenus::kStratocumulus, "stratocumulus"},
                                              {CloudGenus::kAltocumulus, "altocumulus"},
-                                             {CloudGenus::kCirrus, "cirrus"}}};
+                                             {CloudGenus::kCirrus, "cirrus"},
+                                             {CloudGenus::kStratus, "stratus"},
+                                             {CloudGenus::kCirrostratus, "cirrostratus"}}};
 
 /// Horizontal periods are multiples of this length, which the noise of the shapes divides.
 inline constexpr double kPeriodStep_m = 2560.0;
@@ -51,6 +54,7 @@ struct CloudRanges {
   static constexpr std::pair kDroplets_per_cm3{1.0, 5000.0};
   static constexpr std::pair kIce_mg_per_m3{1.0, 1000.0};
   static constexpr std::pair kCrystalRadius_um{5.0, 200.0};
+  static constexpr std::pair kOpticalDepth{0.0, 1000.0};
   static constexpr std::pair kWind_m_per_s{-150.0, 150.0};
   static constexpr std::pair kPeriod_m{kPeriodStep_m, 32.0 * kPeriodStep_m};
 };
@@ -58,12 +62,14 @@ struct CloudRanges {
 /// A layer of clouds.
 struct CloudOptions {
   CloudGenus genus = CloudGenus::kCumulus;
-  double cover = 0.3;                     // of cumulus at most kMostCumulusCover
-  double base_altitude_m = 1200.0;        // except for cirrus at most kHighestWaterBase_m
+  double cover = 0.3;  // of cumulus at most kMostCumulusCover; of stratus and cirrostratus 1
+  double base_altitude_m = 1200.0;        // of droplets at most kHighestWaterBase_m
   double depth_m = 1500.0;                // from the base to the highest tops
   double droplet_number_per_cm3 = 250.0;  // cirrus has none
-  double ice_mg_per_m3 = 0.0;             // of cirrus; others have none
-  double crystal_radius_um = 35.0;        // effective; of cirrus
+  double ice_mg_per_m3 = 0.0;             // of genera of ice; others have none
+  double crystal_radius_um = 35.0;        // effective; of genera of ice
+  /// Vertical optical depth of stratus or cirrostratus; nothing: that of its water or ice.
+  std::optional<double> optical_depth = {};
   std::uint32_t seed = 1;
   glm::dvec2 wind_m_per_s{0.0};  // to the east and to the north
   double period_m = 20480.0;     // a multiple of kPeriodStep_m
@@ -73,11 +79,23 @@ struct CloudOptions {
 
 /// Returns whether bases of a genus follow the ground: the air that forms its clouds rises from there.
 [[nodiscard]] constexpr bool FollowsGround(CloudGenus genus) {
-  return genus == CloudGenus::kCumulus || genus == CloudGenus::kStratocumulus;
+  return genus == CloudGenus::kCumulus || genus == CloudGenus::kStratocumulus ||
+         genus == CloudGenus::kStratus;
 }
 
 /// Returns whether a genus consists of ice; the others consist of droplets.
-[[nodiscard]] constexpr bool IsOfIce(CloudGenus genus) { return genus == CloudGenus::kCirrus; }
+[[nodiscard]] constexpr bool IsOfIce(CloudGenus genus) {
+  return genus == CloudGenus::kCirrus || genus == CloudGenus::kCirrostratus;
+}
+
+/// Returns whether a genus covers the whole sky and is the same at every place. Seed and period have no
+/// effect on it.
+[[nodiscard]] constexpr bool IsPlaneParallel(CloudGenus genus) {
+  return genus == CloudGenus::kStratus || genus == CloudGenus::kCirrostratus;
+}
+
+/// Returns the least and the greatest cover of a genus.
+[[nodiscard]] std::pair<double, double> CoversOf(CloudGenus genus);
 
 /// Returns the options of a genus that names nothing else.
 [[nodiscard]] CloudOptions DefaultCloudOptions(CloudGenus genus);

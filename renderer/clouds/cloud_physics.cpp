@@ -97,6 +97,15 @@ CloudColumn::CloudColumn(double bottom_m, double step_m, std::vector<CloudLevel>
   ALPENGLOW_ENSURE(levels_.size(), >=, std::size_t{2});
 }
 
+CloudColumn CloudColumn::Times(double factor) const {
+  CloudColumn column = *this;
+  for (CloudLevel& level : column.levels_) {
+    level.water_kg_per_m3 *= factor;
+    level.extinction_per_m *= factor;
+  }
+  return column;
+}
+
 double CloudColumn::LargestBetween_per_m(double low_m, double high_m) const {
   double largest = std::max(Extinction_per_m(low_m), Extinction_per_m(high_m));
   const auto last = static_cast<double>(levels_.size() - 1);

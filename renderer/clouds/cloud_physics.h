@@ -83,6 +83,9 @@ class CloudColumn {
   [[nodiscard]] double Water_kg_per_m3(double altitude_m) const {
     return Interpolated(&CloudLevel::water_kg_per_m3, altitude_m);
   }
+  /// Returns the column with another number of equal droplets or crystals everywhere.
+  /// @param factor  >= 0, of water and extinction.
+  [[nodiscard]] CloudColumn Times(double factor) const;
   /// Returns the largest extinction between two altitudes, low <= high.
   [[nodiscard]] double LargestBetween_per_m(double low_m, double high_m) const;
 

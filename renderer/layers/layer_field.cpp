@@ -227,18 +227,27 @@ LayerFluxes LayerField::Fluxes(double depth) const {
 }
 
 double LayerField::Radiance(double depth, const LightWay& way) const {
-  const double mu = SteepEnough(RequireInRange(way.mu, -1.0, 1.0, "mu"));
-  const std::vector<LineSegment> line = LineOfSight(stack_, PlaceAtDepth(stack_, depth), mu);
-  double sum = mu_s_ ? SunScatteredOnce(stack_, *mu_s_, line, {mu, way.azimuth}) : 0.0;
+  const LightWay steep{SteepEnough(RequireInRange(way.mu, -1.0, 1.0, "mu")), way.azimuth};
+  const std::vector<LineSegment> line = LineOfSight(stack_, PlaceAtDepth(stack_, depth), steep.mu);
+  return AlongLine(line, steep) + (mu_s_ ? SunScatteredOnce(stack_, *mu_s_, line, steep) : 0.0);
+}
+
+double LayerField::RadianceOfHigherOrders(double depth, const LightWay& way) const {
+  const LightWay steep{SteepEnough(RequireInRange(way.mu, -1.0, 1.0, "mu")), way.azimuth};
+  return AlongLine(LineOfSight(stack_, PlaceAtDepth(stack_, depth), steep.mu), steep);
+}
+
+double LayerField::AlongLine(const std::vector<LineSegment>& line, const LightWay& way) const {
+  double sum = 0.0;
   for (const LineSegment& segment : line) {
     if (!(segment.to > segment.from)) continue;
     for (std::size_t m = 0; m < solved_.size(); ++m) {
       sum += segment.left * std::cos(static_cast<double>(m) * way.azimuth) *
-             InSegment(static_cast<int>(m), segment, mu);
+             InSegment(static_cast<int>(m), segment, way.mu);
     }
   }
   const LineSegment& last = line.back();
-  return sum + last.left * std::exp(-(last.to - last.from) / std::abs(mu)) * Behind(mu);
+  return sum + last.left * std::exp(-(last.to - last.from) / std::abs(way.mu)) * Behind(way.mu);
 }
 
 std::vector<double> LayerField::SourceOfHigherOrders(double depth) const {

@@ -69,6 +69,8 @@ class LayerField {
   /// @param way  directions within 1e-6 of the horizontal count as going upwards with mu = 1e-6;
   ///   InputError unless mu is in [-1, 1].
   [[nodiscard]] double Radiance(double depth, const LightWay& way) const;
+  /// Returns the same without sunlight that is scattered once.
+  [[nodiscard]] double RadianceOfHigherOrders(double depth, const LightWay& way) const;
 
   /// Returns the light of all orders but the first of the sun's beam that is scattered into any
   /// direction, per optical depth after delta-M: s_lm of
@@ -106,6 +108,8 @@ class LayerField {
   [[nodiscard]] bool IsThin(double decay, double depth) const;
   /// Returns the light that enters the stack at the end of a line of sight.
   [[nodiscard]] double Behind(double mu) const;
+  /// Returns the light of a line of sight, without sunlight that is scattered once.
+  [[nodiscard]] double AlongLine(const std::vector<LineSegment>& line, const LightWay& way) const;
   [[nodiscard]] double InSegment(int m, const LineSegment& segment, double mu) const;
 
   const LayerStack& stack_;

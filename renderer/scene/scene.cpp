@@ -468,15 +468,36 @@ void CheckCloudKeys(const TomlSection& table) {
   }
 }
 
+/// Refuses what a genus that is the same at every place excludes, and what others do.
+void CheckPlaneParallelKeys(const TomlSection& table, const CloudOptions& options) {
+  const std::string genus = kCloudGenusNames.Of(options.genus);
+  if (!IsPlaneParallel(options.genus)) {
+    RefuseKeys(table, {"optical_depth"},
+               fmt::format("is for stratus and cirrostratus; the genus is {}", genus));
+    return;
+  }
+  RefuseKeys(table, {"seed", "period_m"}, fmt::format("is not for {}, which has no gaps", genus));
+  if (options.cover != 1.0) {
+    table.Fail("cover", fmt::format("{} is {}; {} covers the whole sky", table.FullName("cover"),
+                                    options.cover, genus));
+  }
+  if (options.optical_depth) {
+    RefuseKeys(table, {"droplets_per_cm3", "ice_mg_per_m3"},
+               "is what optical_depth replaces; give one of them");
+  }
+}
+
 /// Refuses what the genus of a layer of clouds excludes.
 void CheckGenusKeys(const TomlSection& table, const CloudOptions& options) {
   const std::string genus = kCloudGenusNames.Of(options.genus);
   if (IsOfIce(options.genus)) {
-    RefuseKeys(table, {"droplets_per_cm3"}, "is for clouds of droplets; cirrus is of ice");
+    RefuseKeys(table, {"droplets_per_cm3"},
+               fmt::format("is for clouds of droplets; {} is of ice", genus));
   } else {
     RefuseKeys(table, {"ice_mg_per_m3", "crystal_radius_um"},
-               fmt::format("is for cirrus; {} is of droplets", genus));
+               fmt::format("is for clouds of ice; {} is of droplets", genus));
   }
+  CheckPlaneParallelKeys(table, options);
   if (options.genus == CloudGenus::kCumulus && options.cover > kMostCumulusCover) {
     table.Fail("cover", fmt::format("{} is {}; cumulus cover {} at most, and stratocumulus more",
                                     table.FullName("cover"), options.cover, kMostCumulusCover));

@@ -33,7 +33,8 @@ struct CloudPreset {
 };
 constexpr CloudPreset kPresets[] = {{"fair", CloudGenus::kCumulus, 0.25},
                                     {"broken", CloudGenus::kStratocumulus, 0.75},
-                                    {"high", CloudGenus::kCirrus, 0.5}};
+                                    {"high", CloudGenus::kCirrus, 0.5},
+                                    {"overcast", CloudGenus::kStratus, 1.0}};
 constexpr char kNoClouds[] = "none";
 
 /// Returns the words with which a layer of --clouds begins.
@@ -68,11 +69,12 @@ CloudOptions NamedLayer(std::string_view word) {
 
 /// Returns the cover that follows the name of a genus.
 double CoverFrom(std::string_view word, CloudGenus genus) {
-  const double most = genus == CloudGenus::kCumulus ? kMostCumulusCover : 1.0;
+  const auto [least, most] = CoversOf(genus);
   const std::optional<double> cover = ParseNumber(word);
-  if (cover && *cover >= 0.0 && *cover <= most) return *cover;
-  throw InputError(fmt::format("the cover of {} is \"{}\"; it must be a number in [0, {}]",
-                               kCloudGenusNames.Of(genus), Printable(word), most));
+  if (cover && *cover >= least && *cover <= most) return *cover;
+  throw InputError(fmt::format(
+      "the cover of {} is \"{}\"; it must be {}", kCloudGenusNames.Of(genus), Printable(word),
+      least == most ? fmt::format("{}", most) : fmt::format("a number in [{}, {}]", least, most)));
 }
 
 /// Reads one layer of --clouds.

@@ -10,6 +10,7 @@
 //   fair     cumulus, 2 of 8
 //   broken   stratocumulus, 6 of 8
 //   high     cirrus, 4 of 8
+//   overcast stratus, 8 of 8
 #pragma once
 
 #include <string>
@@ -50,7 +51,7 @@ struct SceneCloudField {
 /// continuous for 15 days at least, and those up to 50 days after it are the same as before.
 [[nodiscard]] int CloudDayNear(const Scene& scene, const UtcTime& begin);
 
-/// Reads "none", or layers separated by commas: a preset ("fair", "broken", "high"), or a genus with
+/// Reads "none", or layers separated by commas: a preset ("fair", "broken", "high", "overcast"), or a genus with
 /// or without its cover: "cumulus 0.3, cirrus". Other options are those of the genus; seeds count
 /// the layers from 1. Throws InputError that names what is wrong, and the nearest known word.
 [[nodiscard]] std::vector<SceneCloud> CloudsFromText(std::string_view text);

@@ -389,25 +389,30 @@ const TomlFields<SceneCloud>& CloudFields() {
   static const TomlFields<SceneCloud> fields{
       "cloud",
       {{"genus", Name(kOptions, &CloudOptions::genus, kCloudGenusNames, OneOfQuoted), "", "",
-        "required without a grid, which is of ice if its genus is cirrus, else of droplets",
+        "required without a grid, which is of ice if its genus is, else of droplets",
         "\"cumulus\""},
        {"cover", Number(kOptions, &CloudOptions::cover, Ranges::kCover), "", "",
-        "fraction of the sky, seen vertically; of cumulus at most 0.8", "0.3"},
+        "fraction of the sky, seen vertically; of cumulus at most 0.8, of stratus and cirrostratus "
+        "1",
+        "0.3"},
        {"base_height_m", Number(kOptions, &CloudOptions::base_altitude_m, Ranges::kBase_m), "m", "",
-        "above the ellipsoid; except for cirrus at most 11000. The default of cumulus and "
-        "stratocumulus is above the ground at the place of the scene. Of a grid: see Fields of "
-        "clouds",
+        "above the ellipsoid; except for clouds of ice at most 11000. The default of cumulus, "
+        "stratocumulus and stratus is above the ground at the place of the scene. Of a grid: see "
+        "Fields of clouds",
         "# 1200.0"},
        {"depth_m", Number(kOptions, &CloudOptions::depth_m, Ranges::kDepth_m), "m", "",
         "from the base to the highest tops", "1500.0"},
        {"droplets_per_cm3",
         Number(kOptions, &CloudOptions::droplet_number_per_cm3, Ranges::kDroplets_per_cm3), "1/cm3",
-        "", "not of cirrus", "250.0"},
+        "", "not of clouds of ice", "250.0"},
        {"ice_mg_per_m3", Number(kOptions, &CloudOptions::ice_mg_per_m3, Ranges::kIce_mg_per_m3),
-        "mg/m3", "", "of cirrus", "# 40.0"},
+        "mg/m3", "", "of cirrus and cirrostratus", "# 40.0"},
        {"crystal_radius_um",
         Number(kOptions, &CloudOptions::crystal_radius_um, Ranges::kCrystalRadius_um),
-        "micrometres", "", "effective; of cirrus", "# 35.0"},
+        "micrometres", "", "effective; of cirrus and cirrostratus", "# 35.0"},
+       {"optical_depth", Number(kOptions, &CloudOptions::optical_depth, Ranges::kOpticalDepth), "",
+        "", "vertical, of stratus and cirrostratus; the default is that of their water or ice",
+        "# 30.0"},
        {"seed", CloudSeed(), "", "", "a whole number; the default is the number of the table", "1"},
        {"wind_m_per_s", CloudWind(), "m/s", "",
         "to the east and to the north; a grid is at its place at the time of the scene, and has no "

@@ -111,7 +111,9 @@ TEST(ApiClouds, EveryGenusHasItsUsualValues) {
   for (const auto& [genus, base_m, depth_m] : {std::tuple{CloudGenus::kCumulus, 1200.0, 1500.0},
                                                {CloudGenus::kStratocumulus, 900.0, 350.0},
                                                {CloudGenus::kAltocumulus, 4000.0, 200.0},
-                                               {CloudGenus::kCirrus, 8000.0, 1200.0}}) {
+                                               {CloudGenus::kCirrus, 8000.0, 1200.0},
+                                               {CloudGenus::kStratus, 500.0, 600.0},
+                                               {CloudGenus::kCirrostratus, 7500.0, 1000.0}}) {
     const CloudField field({.genus = genus, .period_m = 2560.0});
     EXPECT_GT(field.top_m(), base_m) << static_cast<int>(genus);
     EXPECT_LT(field.base_m(), base_m + depth_m) << static_cast<int>(genus);
@@ -362,9 +364,17 @@ TEST(ApiClouds, InvalidLayersAreRefusedByName) {
          "layer.depth_m is 50; it must lie in [100, 4000]");
   expect([](CloudLayer& layer) { layer.droplets_per_cm3 = 0.0; }, "layer.droplets_per_cm3 is 0");
   expect([](CloudLayer& layer) { layer.ice_mg_per_m3 = 20.0; },
-         "layer.ice_mg_per_m3 is given; only cirrus");
+         "layer.ice_mg_per_m3 is given; only a genus of ice");
   expect([](CloudLayer& layer) { layer.crystal_radius_um = 20.0; },
          "layer.crystal_radius_um is given");
+  expect([](CloudLayer& layer) { layer.optical_depth = 20.0; },
+         "layer.optical_depth is given; only stratus and cirrostratus");
+  expect(
+      [](CloudLayer& layer) {
+        layer.genus = CloudGenus::kStratus;
+        layer.optical_depth = kNan;
+      },
+      "layer.optical_depth is nan; it must lie in [0, 1000]");
   expect([](CloudLayer& layer) { layer.wind_north_m_per_s = kInfinity; },
          "layer.wind_north_m_per_s is inf");
   expect([](CloudLayer& layer) { layer.wind_east_m_per_s = -200.0; },

@@ -210,7 +210,10 @@ TEST(CloudsOfText, FaultsNameWordAndRange) {
            {"fair,", "a layer of clouds is empty"},
            {"cumulos 0.3", "\"cumulos\" is no genus or preset of clouds; did you mean cumulus?"},
            {"fiar", "did you mean fair?"},
-           {"xyz", "known: none, fair, broken, high, cumulus, stratocumulus, altocumulus, cirrus"},
+           {"xyz",
+            "known: none, fair, broken, high, overcast, cumulus, stratocumulus, altocumulus, "
+            "cirrus, "
+            "stratus, cirrostratus"},
            {"cumulus 0.9", "the cover of cumulus is \"0.9\"; it must be a number in [0, 0.8]"},
            {"cirrus 1.01", "the cover of cirrus is \"1.01\"; it must be a number in [0, 1]"},
            {"cirrus -0.1", "\"-0.1\"; it must be a number"},

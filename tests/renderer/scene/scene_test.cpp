@@ -255,16 +255,14 @@ longitude = 138.5
 )");
   ASSERT_EQ(scene.clouds.size(), 3U);
   const CloudOptions& deck = scene.clouds[0].options;
-  EXPECT_EQ(deck, (CloudOptions{CloudGenus::kStratocumulus,
-                                0.9,
-                                1500.0,
-                                400.0,
-                                150.0,
-                                0.0,
-                                35.0,
-                                7U,
-                                {-3.0, 5.0},
-                                10240.0}));
+  EXPECT_EQ(deck, (CloudOptions{.genus = CloudGenus::kStratocumulus,
+                                .cover = 0.9,
+                                .base_altitude_m = 1500.0,
+                                .depth_m = 400.0,
+                                .droplet_number_per_cm3 = 150.0,
+                                .seed = 7U,
+                                .wind_m_per_s = {-3.0, 5.0},
+                                .period_m = 10240.0}));
   CloudOptions cirrus = DefaultCloudOptions(CloudGenus::kCirrus);
   cirrus.ice_mg_per_m3 = 60.0;
   cirrus.crystal_radius_um = 40.0;
@@ -498,6 +496,7 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
 
 const std::string kCumulus = kPlace + "[[cloud]]\ngenus = \"cumulus\"\n",
                   kCirrus = kPlace + "[[cloud]]\ngenus = \"cirrus\"\n",
+                  kStratus = kPlace + "[[cloud]]\ngenus = \"stratus\"\n",
                   kGrid = kPlace + "[[cloud]]\ngrid = \"field.txt\"\n";
 
 TEST(Scene, CloudsAreRefusedByKey) {
@@ -508,7 +507,9 @@ TEST(Scene, CloudsAreRefusedByKey) {
       {kPlace + "[[cloud]]\ncover = 0.5\n", "s.toml:4: cloud[0].genus is missing"},
       {kPlace + "[[cloud]]\ngenus = \"cumulos\"\n",
        "s.toml:5: cloud[0].genus is \"cumulos\"; it must be one of \"cumulus\", "
-       "\"stratocumulus\", \"altocumulus\", \"cirrus\"; did you mean \"cumulus\"?"},
+       "\"stratocumulus\", \"altocumulus\", \"cirrus\", \"stratus\", \"cirrostratus\"; did you "
+       "mean "
+       "\"cumulus\"?"},
       {kCumulus + "cover = 1.2\n", "s.toml:6: cloud[0].cover is 1.2; it must lie in [0, 1]"},
       {kCumulus + "cover = 0.9\n",
        "s.toml:6: cloud[0].cover is 0.9; cumulus cover 0.8 at most, and stratocumulus more"},
@@ -520,10 +521,21 @@ TEST(Scene, CloudsAreRefusedByKey) {
       {kCumulus + "wind_m_per_s = [1]\n", "cloud[0].wind_m_per_s has 1 values; it must have two"},
       {kCumulus + "wind_m_per_s = [1, 2, 3]\n", "cloud[0].wind_m_per_s has 3 values"},
       {kCumulus + "ice_mg_per_m3 = 40\n",
-       "cloud[0].ice_mg_per_m3 is for cirrus; cumulus is of droplets"},
-      {kCumulus + "crystal_radius_um = 40\n", "cloud[0].crystal_radius_um is for cirrus"},
+       "cloud[0].ice_mg_per_m3 is for clouds of ice; cumulus is of droplets"},
+      {kCumulus + "crystal_radius_um = 40\n", "cloud[0].crystal_radius_um is for clouds of ice"},
       {kCirrus + "droplets_per_cm3 = 40\n",
        "cloud[0].droplets_per_cm3 is for clouds of droplets; cirrus is of ice"},
+      {kCumulus + "optical_depth = 9\n",
+       "cloud[0].optical_depth is for stratus and cirrostratus; the genus is cumulus"},
+      {kStratus + "cover = 0.9\n", "s.toml:6: cloud[0].cover is 0.9; stratus covers the whole sky"},
+      {kStratus + "optical_depth = -1\n",
+       "s.toml:6: cloud[0].optical_depth is -1; it must lie in [0, 1000]"},
+      {kStratus + "optical_depth = inf\n", "s.toml:6: cloud[0].optical_depth is inf"},
+      {kStratus + "optical_depth = 9\ndroplets_per_cm3 = 100\n",
+       "cloud[0].droplets_per_cm3 is what optical_depth replaces"},
+      {kStratus + "seed = 2\n", "cloud[0].seed is not for stratus, which has no gaps"},
+      {kStratus + "period_m = 5120\n", "cloud[0].period_m is not for stratus"},
+      {kStratus + "depth_m = -10\n", "cloud[0].depth_m is -10; it must lie in"},
       {kCirrus + kCumulus.substr(kPlace.size()) + "cover = 0.81\n", "s.toml:8: cloud[1].cover"},
       {kCumulus + "repeats = true\n", "cloud[0].repeats is for a grid"},
       {kCumulus + "latitude = 3\nlongitude = 4\n", "cloud[0].latitude is for a grid"},

@@ -707,6 +707,7 @@ const std::vector<ChangedKey>& ChangedObjects() {
 
 constexpr char kCumulus[] = "[[cloud]]\ngenus = 'cumulus'\n";
 constexpr char kCirrus[] = "[[cloud]]\ngenus = 'cirrus'\n";
+constexpr char kStratus[] = "[[cloud]]\ngenus = 'stratus'\n";
 constexpr char kCloudGrid[] = "[[cloud]]\ngrid = 'one.txt'\n";
 constexpr char kVdbCloud[] = "[[cloud]]\ngrid = 'one.vdb'\n";
 constexpr char kRawCloud[] = "[[cloud]]\ngrid = 'one.raw'\nspacing_m = 50\nbase_height_m = 900\n";
@@ -727,6 +728,7 @@ const std::vector<ChangedKey>& ChangedClouds() {
       {kCumulus, "", "period_m = 10240"},
       {kCirrus, "", "ice_mg_per_m3 = 41"},
       {kCirrus, "", "crystal_radius_um = 36"},
+      {kStratus, "", "optical_depth = 30"},
       {"[[cloud]]\n", "grid = 'one.txt'", "grid = 'two.txt'"},
       {kVdbCloud, "", "base_height_m = 1200"},
       {kVdbCloud, "", "spacing_m = 50"},

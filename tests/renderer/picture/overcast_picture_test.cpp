@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Pictures below stratus that covers the whole sky.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "atmosphere/math/constants.h"
+#include "renderer/picture/render.h"
+#include "renderer/scene/scene_clouds.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/luminance.h"
+#include "tests/fixtures/sanitized.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+/// Mean luminances of the sky by elevation, from the zenith down [cd/m^2].
+struct OvercastSky {
+  std::vector<double> elevation_rad, luminance;
+
+  [[nodiscard]] double Illuminance_lx() const {
+    double sum = 0.0;
+    const double step_rad = 0.5 * kPi / static_cast<double>(luminance.size());
+    for (std::size_t i = 0; i < luminance.size(); ++i) {
+      sum += 2.0 * kPi * luminance[i] * std::sin(elevation_rad[i]) * std::cos(elevation_rad[i]) *
+             step_rad;
+    }
+    return sum;
+  }
+};
+
+OvercastSky SkyAt(const char* instant) {
+  Scene scene = QuickScene(2.0, 0.0, 0.0, 360.0);
+  scene.clouds = CloudsFromText("overcast");
+  RenderSettings settings;
+  settings.width = tests::ScaledDown(48, 16);
+  settings.height = settings.width / 2;
+  settings.samples_per_pixel = 1;
+  const HdrImage image = SceneRenderer(scene).Render(ParseInstant(instant), settings);
+  OvercastSky sky;
+  for (int row = 0; row < settings.height / 2; ++row) {
+    double sum = 0.0;
+    for (int column = 0; column < settings.width; ++column)
+      sum += tests::Luminance(image.at(column, row));
+    sky.elevation_rad.push_back((0.5 - (row + 0.5) / settings.height) * kPi);
+    sky.luminance.push_back(sum / settings.width);
+  }
+  return sky;
+}
+
+// The standard overcast sky is a third as bright at the horizon as in the zenith (CIE S 011/E:2003,
+// Spatial distribution of daylight, type 1). Haze in front of clouds brightens the last degrees: by
+// 0.15 at 11 degrees, for a sun 20 degrees high.
+TEST(OvercastPicture, LuminanceIsThatOfTheCieOvercastSky) {
+  for (const char* instant : {"2026-06-21T11:30:00Z", "2026-03-21T08:00:00Z"}) {
+    const OvercastSky sky = SkyAt(instant);
+    for (std::size_t i = 0; i < sky.luminance.size(); ++i) {
+      if (sky.elevation_rad[i] < 12.0 * kRadiansPerDegree) continue;
+      const double standard = (1.0 + 2.0 * std::sin(sky.elevation_rad[i])) / 3.0;
+      EXPECT_NEAR(sky.luminance[i] / sky.luminance.front() / standard, 1.0, 0.15)
+          << instant << ", " << sky.elevation_rad[i] / kRadiansPerDegree;
+    }
+  }
+}
+
+// The range is usual by day. The sun is 20 and 44 degrees high; at 67 degrees stratus of the usual
+// depth lets 25 klx through.
+TEST(OvercastPicture, LightOnTheGroundIs5To20Kilolux) {
+  for (const char* instant : {"2026-12-21T11:30:00Z", "2026-03-21T11:30:00Z"}) {
+    const double lux = SkyAt(instant).Illuminance_lx();
+    EXPECT_GT(lux, 5e3) << instant;
+    EXPECT_LT(lux, 20e3) << instant;
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow::renderer
