@@ -209,6 +209,7 @@ void FrameContext::LightSpheres() {
                            {light.direction.seen, light.radius_rad},
                            light.irradiance * *left,
                            static_cast<int>(std::min(photons, kMostPhotons)),
+                           scene_->scene().objects.front().photon_map,
                            camera().eye(),
                            camera().PixelAngle()},
         source.media->media());

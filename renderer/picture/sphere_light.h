@@ -3,18 +3,21 @@
 // through them into media (caustics).
 //
 // The spheres of a scene share the sunlight at the first of them that is lit: they stand near each
-// other. Beams end at the ground, or after 12 radii of the largest sphere. Their radius is half a pixel
-// at the nearest sphere, or more where the photons are too few for that.
+// other. Beams end at the ground, or after 12 radii of the largest sphere. The radius of beams or points
+// is half a pixel at the nearest sphere, or more where the photons are too few for that: points need a
+// wider one.
 #pragma once
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <variant>
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
 #include "renderer/media/local_media.h"
 #include "renderer/scene/scene.h"
 #include "renderer/specular/beam_map.h"
+#include "renderer/specular/point_map.h"
 #include "renderer/specular/specular_sphere.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"
@@ -32,6 +35,7 @@ struct SphereSurroundings {
   DiskOfLight light;
   Spectrum irradiance;  // at the spheres, W m^-2 nm^-1
   int photons;
+  PhotonMap map;
   glm::dvec3 eye;
   double pixel_rad;
 };
@@ -47,7 +51,7 @@ class Caustics {
 
  private:
   Spectrum irradiance_;
-  BeamMap map_;
+  std::variant<BeamMap, PointMap> map_;
 };
 
 }  // namespace alpenglow::renderer

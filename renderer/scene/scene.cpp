@@ -431,8 +431,9 @@ Volume VolumeOf(const TomlTable& entry, const fs::path& folder, std::size_t band
   return volume;
 }
 
-/// @param name  in messages.
-SceneObject ObjectOf(const TomlTable& entry, const std::string& name) {
+/// @param name  in messages. @param before  objects of earlier tables.
+SceneObject ObjectOf(const TomlTable& entry, const std::string& name,
+                     const std::vector<SceneObject>& before) {
   const TomlSection table(entry, ObjectFields().Keys());
   for (const char* key : {"latitude", "longitude"}) Require(table, key);
   SceneObject object;
@@ -444,6 +445,12 @@ SceneObject ObjectOf(const TomlTable& entry, const std::string& name) {
   if (object.photons != std::floor(object.photons)) {
     table.Fail("photons", fmt::format("{} is {}; it must be a whole number",
                                       table.FullName("photons"), object.photons));
+  }
+  if (!before.empty() && object.photon_map != before.front().photon_map) {
+    table.Fail(
+        "photon_map",
+        fmt::format("{} is \"{}\"; that of object[0] is \"{}\"", table.FullName("photon_map"),
+                    kPhotonMaps.Of(object.photon_map), kPhotonMaps.Of(before.front().photon_map)));
   }
   return object;
 }
@@ -694,8 +701,8 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
     scene.volumes.push_back(VolumeOf(volume, folder, scene.medium.wavelengths_nm.size()));
   }
   for (const TomlTable& object : document.Tables(ObjectFields().name)) {
-    scene.objects.push_back(
-        ObjectOf(object, fmt::format("{}: object[{}]", origin, scene.objects.size())));
+    scene.objects.push_back(ObjectOf(
+        object, fmt::format("{}: object[{}]", origin, scene.objects.size()), scene.objects));
   }
   scene.clouds = CloudsOf(document, folder, origin);
   return scene;

@@ -165,6 +165,12 @@ struct Volume {
   ScatteringOrders orders = ScatteringOrders::kAll;
 };
 
+/// The map of photons in media: beams, which have less noise, or points where they are scattered.
+enum class PhotonMap { kBeams, kPoints };
+
+inline constexpr EnumNames kPhotonMaps{
+    {std::pair{PhotonMap::kBeams, "beams"}, {PhotonMap::kPoints, "points"}}};
+
 /// A sphere of glass or a mirror, see SpecularSphere.
 struct SceneObject {
   std::string name;          // in messages: "scene.toml: object[0]"
@@ -174,6 +180,7 @@ struct SceneObject {
   SphereMaterial material = SphereMaterial::kGlass;
   double index = 1.5;         // of refraction, of glass
   double photons = 100000.0;  // for its light in media; a whole number
+  PhotonMap photon_map = PhotonMap::kBeams;
 };
 
 /// A layer of clouds over the whole scene, or a field of others; see CloudFieldsOf.

@@ -375,7 +375,9 @@ const TomlFields<SceneObject>& ObjectFields() {
        {"index", Number(&SceneObject::index, {kLeastRefractiveIndex, kMostRefractiveIndex}), "", "",
         "of refraction, of glass", "1.5"},
        {"photons", Number(&SceneObject::photons, {1.0, 1e7}), "", "",
-        "a whole number: for the light that the object sends into fog and volumes", "100000"}},
+        "a whole number: for the light that the object sends into fog and volumes", "100000"},
+       {"photon_map", Name(&SceneObject::photon_map, kPhotonMaps, OneOfQuoted), "", "",
+        "of this light, the same for all objects", "\"beams\""}},
       "a sphere of glass or a mirror; any number",
       /*is_list=*/true};
   return fields;

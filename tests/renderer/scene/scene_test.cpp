@@ -441,6 +441,9 @@ TEST(Scene, SpheresAreRefusedByKey) {
       {ball + "photons = 0\n", "object[0].photons is 0; it must lie in [1, "},
       {ball + "photons = 1.5\n", "object[0].photons is 1.5; it must be a whole number"},
       {ball + "material = \"wood\"\n", "object[0].material is \"wood\""},
+      {ball + "photon_map = \"rays\"\n", "object[0].photon_map is \"rays\""},
+      {ball + ball.substr(kPlace.size()) + "photon_map = \"points\"\n",
+       "object[1].photon_map is \"points\"; that of object[0] is \"beams\""},
       {ball + "material = \"mirror\"\nindex = 1.5\n", "object[0].index is for glass"},
       {ball + "height_m = 9\nabove_ground_m = 2\n", "give one"},
   });

@@ -701,7 +701,8 @@ const std::vector<ChangedKey>& ChangedObjects() {
       {kBall, "", "radius_m = 2"},
       {kBall, "", "material = 'mirror'"},
       {kBall, "", "index = 1.6"},
-      {kBall, "", "photons = 1000"}};
+      {kBall, "", "photons = 1000"},
+      {kBall, "", "photon_map = 'points'"}};
   return kKeys;
 }
 
