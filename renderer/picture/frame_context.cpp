@@ -191,7 +191,7 @@ void FrameContext::LightSpheres() {
   double photons = 0.0;
   for (const SceneObject& object : scene_->scene().objects) photons += object.photons;
   for (FrameLight& source : lights_) {
-    if (!source.media || !source.light.shows) continue;
+    if (!source.light.shows) continue;
     const DistantLight& light = source.light.source;
     const auto lit = [&](const SpecularSphere& sphere) {
       return over_ground_->ground_light.InAir(sphere.centre, source.ground_sources());
@@ -212,7 +212,7 @@ void FrameContext::LightSpheres() {
                            scene_->scene().objects.front().photon_map,
                            camera().eye(),
                            camera().PixelAngle()},
-        source.media->media());
+        source.media ? std::optional(source.media->media()) : std::nullopt);
   }
 }
 

@@ -35,7 +35,7 @@ struct FrameLight {
   std::shared_ptr<const MediaLight> media;         // null: no bodies, and only lamps light layers
   std::shared_ptr<const LitClouds> clouds = nullptr;       // null: none
   std::shared_ptr<const ScenePathTracer> paths = nullptr;  // null: the fast method
-  std::shared_ptr<const Caustics> caustics = nullptr;      // of spheres in media; null: none
+  std::shared_ptr<const Caustics> caustics = nullptr;      // of spheres; null: none
 
   /// Returns the shadow of clouds; null: none.
   [[nodiscard]] const CloudShadow* cloud_shadow() const {
@@ -102,7 +102,7 @@ class FrameContext {
   void LightNight();
   void LightMedia();
   void LightClouds();
-  /// Follows the light of spheres into media.
+  /// Follows the light of spheres onto the ground and into media.
   void LightSpheres();
   /// Computes the terrain's illumination by all lights.
   void LightTerrain();

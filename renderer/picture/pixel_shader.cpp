@@ -230,7 +230,12 @@ void PixelShader::AddGround(const Hit& hit, const CameraRay& ray, const LampTile
     if (!source.light.shows) continue;
     const NaturalRadiance sent = ground_light.Natural(seen, source.ground_sources(), disk_sample);
     if (&source == &frame_->lights().front()) shaded.sun_visibility = sent.disk_visibility;
-    if (has_natural) natural = natural + sent.radiance;
+    if (!has_natural) continue;
+    natural = natural + sent.radiance;
+    // Light through spheres takes the place of their shadows.
+    if (source.caustics && source.light.effects.Has(Effect::kShadows))
+      natural = natural + static_cast<float>(1.0 / kPi) *
+                              (seen.albedo * source.caustics->OnGround(hit.smooth_point));
   }
   if (const NightLight* night = frame_->sky_lights().night.get()) {
     const double cos_up = glm::dot(hit.normal, seen.up);

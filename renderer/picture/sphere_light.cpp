@@ -20,7 +20,9 @@ namespace {
 // times their radius, that of points on the square of the radius.
 constexpr double kStudiedPhotons = 1e5, kStudiedBeam = 0.025, kStudiedPoint = 0.2;
 constexpr double kWidest = 0.25;
-constexpr double kLongestBeam = 12.0;
+constexpr double kLongestBeam = 12.0, kFarthestGround = 200.0;
+// 360 of 1e5 photons.
+constexpr double kStudiedSpot = 0.06;
 
 double LargestRadius(const std::vector<SpecularSphere>& spheres) {
   double largest_m = 0.0;
@@ -46,8 +48,14 @@ std::vector<PhotonBeam> BeamsOf(const SphereSurroundings& around) {
   };
   return FollowPhotons(
       around.spheres, around.light,
-      {.photons = around.photons, .longest_m = kLongestBeam * LargestRadius(around.spheres)},
+      {.photons = around.photons, .longest_m = kFarthestGround * LargestRadius(around.spheres)},
       to_ground);
+}
+
+/// Returns the radius of spots on the ground.
+double SpotRadius(const SphereSurroundings& around) {
+  const double dense = kStudiedSpot * std::sqrt(kStudiedPhotons / around.photons);
+  return std::min(dense, kWidest) * LargestRadius(around.spheres);
 }
 
 }  // namespace
@@ -70,18 +78,35 @@ std::vector<SpecularSphere> SpheresOf(const Scene& scene, const SceneGround& gro
   return spheres;
 }
 
-Caustics::Caustics(const SphereSurroundings& around, LocalMedia media)
-    : irradiance_(around.irradiance), map_([&]() -> std::variant<BeamMap, PointMap> {
-        std::vector<PhotonBeam> beams = BeamsOf(around);
-        const double radius_m = MapRadius(around);
-        if (around.map == PhotonMap::kPoints) return PointMap(beams, std::move(media), radius_m);
-        return BeamMap(std::move(beams), std::move(media), radius_m);
-      }()) {}
+std::optional<Caustics::MediaMap> Caustics::MapOf(const SphereSurroundings& around,
+                                                  const std::optional<LocalMedia>& media,
+                                                  std::vector<PhotonBeam> beams) {
+  if (!media) return std::nullopt;
+  const double longest_m = kLongestBeam * LargestRadius(around.spheres);
+  for (PhotonBeam& beam : beams) beam.length_m = std::min(beam.length_m, longest_m);
+  const double radius_m = MapRadius(around);
+  if (around.map == PhotonMap::kPoints) return PointMap(beams, *media, radius_m);
+  return BeamMap(std::move(beams), *media, radius_m);
+}
+
+Caustics::Caustics(const SphereSurroundings& around, const std::optional<LocalMedia>& media,
+                   std::vector<PhotonBeam> beams)
+    : irradiance_(around.irradiance),
+      on_ground_(beams, SpotRadius(around)),
+      in_media_(MapOf(around, media, std::move(beams))) {}
+
+Caustics::Caustics(const SphereSurroundings& around, const std::optional<LocalMedia>& media)
+    : Caustics(around, media, BeamsOf(around)) {}
+
+Spectrum Caustics::OnGround(const glm::dvec3& point) const {
+  return static_cast<float>(on_ground_.Irradiance(point)) * irradiance_;
+}
 
 Spectrum Caustics::Along(const glm::dvec3& origin, const glm::dvec3& direction,
                          double length_m) const {
-  const SpectrumOf<double> per_irradiance =
-      std::visit([&](const auto& map) { return map.Radiance(origin, direction, length_m); }, map_);
+  if (!in_media_) return Spectrum(irradiance_.size());
+  const SpectrumOf<double> per_irradiance = std::visit(
+      [&](const auto& map) { return map.Radiance(origin, direction, length_m); }, *in_media_);
   Spectrum light = irradiance_;
   for (std::size_t band = 0; band < light.size(); ++band)
     light[band] *= static_cast<float>(per_irradiance[band]);

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Spheres of glass and mirrors of a scene: their places, and the light that one distant light sends
-// through them into media (caustics).
+// through them onto the ground and into media (caustics).
 //
 // The spheres of a scene share the sunlight at the first of them that is lit: they stand near each
 // other. Beams end at the ground, or after 12 radii of the largest sphere. The radius of beams or points
 // is half a pixel at the nearest sphere, or more where the photons are too few for that: points need a
-// wider one.
+// wider one. On the ground, light is found up to 200 radii away, and has at least the radius with which
+// evenly spread photons have a noise of 6 %.
 #pragma once
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -19,6 +21,7 @@
 #include "renderer/specular/beam_map.h"
 #include "renderer/specular/point_map.h"
 #include "renderer/specular/specular_sphere.h"
+#include "renderer/specular/surface_map.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"
 
@@ -40,18 +43,29 @@ struct SphereSurroundings {
   double pixel_rad;
 };
 
-/// The caustics of one light in media. Immutable; safe to use from many threads.
+/// The caustics of one light. Immutable; safe to use from many threads.
 class Caustics {
  public:
-  Caustics(const SphereSurroundings& around, LocalMedia media);
+  /// @param media  nothing: caustics on the ground alone.
+  Caustics(const SphereSurroundings& around, const std::optional<LocalMedia>& media);
 
-  /// Returns the light that arrives at the origin of a ray [W m^-2 sr^-1 nm^-1].
+  /// Returns the light that media send to the origin of a ray [W m^-2 sr^-1 nm^-1].
   [[nodiscard]] Spectrum Along(const glm::dvec3& origin, const glm::dvec3& direction,
                                double length_m) const;
+  /// Returns the irradiance of the ground at a point [W m^-2 nm^-1].
+  [[nodiscard]] Spectrum OnGround(const glm::dvec3& point) const;
 
  private:
+  using MediaMap = std::variant<BeamMap, PointMap>;
+  Caustics(const SphereSurroundings& around, const std::optional<LocalMedia>& media,
+           std::vector<PhotonBeam> beams);
+  [[nodiscard]] static std::optional<MediaMap> MapOf(const SphereSurroundings& around,
+                                                     const std::optional<LocalMedia>& media,
+                                                     std::vector<PhotonBeam> beams);
+
   Spectrum irradiance_;
-  std::variant<BeamMap, PointMap> map_;
+  SurfaceMap on_ground_;
+  std::optional<MediaMap> in_media_;
 };
 
 }  // namespace alpenglow::renderer

@@ -104,10 +104,13 @@ class PhotonFollower {
       origin = leaving.origin;
       direction = leaving.direction;
       met = FirstSphereOn(spheres_, origin, direction);
-      const double end_m = std::min(end_(origin, direction), options_.longest_m);
+      const double surface_m = end_(origin, direction);
+      const double end_m = std::min(surface_m, options_.longest_m);
       if (met && met->distance_m > end_m) met.reset();
       const double length_m = met ? met->distance_m : end_m;
-      beams.push_back({origin, direction, length_m, area_m2, static_cast<int>(leg)});
+      const bool ends_on_surface = !met && surface_m <= options_.longest_m;
+      beams.push_back(
+          {origin, direction, length_m, area_m2, static_cast<int>(leg), ends_on_surface});
     }
   }
 

@@ -37,6 +37,7 @@ struct PhotonBeam {
   double area_m2;  // power per irradiance
   /// The number of beams that led to this one. The beam of the leg before is the one before in the list.
   int leg;
+  bool ends_on_surface = false;  // at DistanceToEnd, before a sphere and before `longest_m`
 };
 
 inline constexpr double kMostPhotons = 1e7;
