@@ -161,7 +161,9 @@ struct CloudLight::SunLight {
     if (options.rays == 0) return {};
     options.collisions = collisions;
     const CloudPathTracer tracer(*light.field, light.scatterers,
-                                 {.to_sun = depths.to_sun(), .low_sun = depths.low_sun()},
+                                 {.to_sun = depths.to_sun(),
+                                  .ground_altitude_m = light.ground_altitude_m,
+                                  .low_sun = depths.low_sun()},
                                  light.options.gather.uses_detail);
     return FitCloudFactor(*light.field, gather, tracer, options);
   }

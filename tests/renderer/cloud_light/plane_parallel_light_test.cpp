@@ -126,7 +126,7 @@ void ExpectTracedPaths(const CloudField& field, const glm::dvec3& to_sun,
   const CloudPathTracer tracer(field, scatterers,
                                {.to_sun = to_sun, .low_sun = light.sun().low_sun()});
   CloudPathOptions options;
-  options.paths = tests::ScaledDown<std::size_t>(5000, 160);
+  options.paths = tests::ScaledDown<std::size_t>(8000, 160);
   for (const CloudRay& ray : rays) {
     const CloudRadiance traced = tracer.Radiance(ray, options);
     const CloudRayLight found = light.Radiance(ray);
@@ -170,6 +170,29 @@ TEST(PlaneParallelLight, ASunBelowTheHorizonLightsTheBase) {
     EXPECT_NEAR(light.Radiance(ray).sun, traced.sun.value,
                 4.0 * traced.sun.standard_error + 0.1 * traced.sun.value);
     EXPECT_GT(traced.sun.value, 3.0 * traced.sun.standard_error);
+  }
+}
+
+// The lattice of a layer begins 20 m below its base, and thus below the plane of altitude 0.
+TEST(PlaneParallelLight, ABaseAtTheGroundHasTheLightOfAHigherOne) {
+  const auto light_at = [](double base_m, CloudLightMethod method) {
+    CloudOptions options = DefaultCloudOptions(CloudGenus::kCirrostratus);
+    options.ice_mg_per_m3 = 20.0;
+    options.base_altitude_m = base_m;
+    const CloudField field = MakeCloudField(options);
+    CloudLightOptions by_method;
+    by_method.method = method;
+    by_method.paths.paths = tests::ScaledDown(4000, 400);
+    const CloudLight light(field, LobeScatterers(1.0),
+                           {.to_sun = DirectionOf(35.0, 20.0),
+                            .ground_altitude_m = std::min(0.0, field.base_altitude_m())},
+                           by_method);
+    return light.Radiance({{0.0, 0.0, base_m - 30.0}, DirectionOf(50.0, 80.0)}).sun;
+  };
+  for (const CloudLightMethod method : {CloudLightMethod::kFast, CloudLightMethod::kHybrid}) {
+    const double low = light_at(0.0, method), high = light_at(1000.0, method);
+    // Paths differ, because their random numbers follow the ray.
+    EXPECT_NEAR(low / high, 1.0, method == CloudLightMethod::kFast ? 1e-3 : 0.1);
   }
 }
 
