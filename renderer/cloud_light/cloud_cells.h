@@ -51,6 +51,7 @@ class CloudCells {
 
   [[nodiscard]] const std::array<int, 3>& count() const { return count_; }
   [[nodiscard]] const glm::dvec3& cell_m() const { return cell_m_; }
+  [[nodiscard]] CloudCellLattice lattice() const { return {count_, origin_m_, cell_m_}; }
   [[nodiscard]] bool is_periodic() const { return is_periodic_; }
   [[nodiscard]] std::size_t full() const { return extinction_per_m_.size(); }
   /// Returns the number of stored cells.
@@ -61,6 +62,11 @@ class CloudCells {
   }
   /// Returns the middle of a stored cell.
   [[nodiscard]] glm::dvec3 Middle(std::size_t cell) const;
+  /// Returns the full cell at a place along x, y and z within count(), or -1.
+  [[nodiscard]] std::int32_t FullCellOf(const std::array<int, 3>& place) const {
+    const std::int32_t cell = stored_[PlaceOf(place[0], place[1], place[2])];
+    return cell < static_cast<std::int32_t>(full()) ? cell : -1;
+  }
   /// Returns the full cell that holds a point, or the nearest one of the cells around it, within two
   /// cells; of equally near ones that with the greatest component along `ahead`. Returns -1 if
   /// there is none.

@@ -535,14 +535,7 @@ SolvedCloudMoments CloudMomentSolver::Light(const CloudIllumination& light) cons
       for (const CloudDirection& direction : CloudDirections())
         sources[i].entering.push_back(static_cast<float>(light.entering(direction.travel)));
     }
-    if (!light.incident) continue;
-    const CloudCells& of = *grids_[i]->cells();
-    const glm::dvec3 half_m = 0.5 * of.cell_m();
-    sources[i].incident.resize(of.full());
-    tbb::parallel_for(std::size_t{0}, of.full(), [&](std::size_t cell) {
-      const glm::dvec3 middle = of.Middle(cell);
-      sources[i].incident[cell] = light.incident({middle - half_m, middle + half_m});
-    });
+    if (light.incident) sources[i].incident = light.incident(*grids_[i]->cells());
   }
   return Cascade(sources);
 }

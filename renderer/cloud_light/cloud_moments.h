@@ -86,10 +86,10 @@ struct SolvedCloudMoments {
 struct CloudIllumination {
   /// Returns the radiance that enters along a direction of travel; null: none.
   std::function<double(const glm::dvec3& travel)> entering;
-  /// Returns the sum of E' Y_lm(d) over all scaled beams of irradiance E' that travel along d, the
-  /// mean over a cell weighted by extinction; null: none. Isotropic emission of the radiance J per
-  /// unit of scaled extinction is J / (w' Y_00) in the first moment. Safe to call from many threads.
-  std::function<CloudHarmonics(const CloudBox& cell)> incident;
+  /// Returns, for each full cell of a grid, the sum of E' Y_lm(d) over all scaled beams of irradiance
+  /// E' that travel along d, the mean over the cell weighted by extinction; null: none. Isotropic
+  /// emission of the radiance J per unit of scaled extinction is J / (w' Y_00) in the first moment.
+  std::function<std::vector<CloudHarmonics>(const CloudCells& cells)> incident;
 };
 
 /// Solves for the light of one field. Immutable. It does not refer to the field.

@@ -101,7 +101,6 @@ std::unique_ptr<const VolumeOrders> LitVolume::Orders() const {
   if (volume_.orders() == ScatteringOrders::kSingle || !HasOrdersOf(volume_.optics().phase))
     return nullptr;
   VolumeIllumination light{.to_sun = sources_.light.direction.seen,
-                           .sun_column_m = nullptr,
                            .sky = nullptr,
                            .lamps = nullptr,
                            .emits = sources_.emission == MediaEmission::kOn};
@@ -109,11 +108,7 @@ std::unique_ptr<const VolumeOrders> LitVolume::Orders() const {
   const auto is_sunlit = [&](const glm::dvec3& unit) {
     return sources_.SunInAir(volume_.FrameFromUnit(unit)) != none;
   };
-  if (is_sunlit(glm::dvec3(0.5)) || is_sunlit({0.5, 0.5, 1.0})) {
-    light.sun_column_m = [&](const glm::dvec3& point) {
-      return ColumnToLight(point, sources_.light.direction.seen);
-    };
-  }
+  light.has_sun = is_sunlit(glm::dvec3(0.5)) || is_sunlit({0.5, 0.5, 1.0});
   light.sky = [&](const glm::dvec3& from) { return SkyPastBodies(from); };
   if (!lamps_.empty()) {
     light.lamps = [&](const glm::dvec3& point, std::size_t band, double least_m) {
@@ -287,7 +282,7 @@ std::vector<LampBeam> LitVolume::LampBeams(const glm::dvec3& point, std::size_t 
     const double left = std::exp(-seen.depth[band].At(volume_.UnitFromFrame(point)));
     const double per_area = RelativeIntensity(seen.lamp, travel) / (distance * distance);
     beams.push_back({travel, per_area * left * static_cast<double>(seen.intensity[band]),
-                     ColumnToLamp(seen, point)});
+                     ColumnToLamp(seen, point), length});
   }
   return beams;
 }
@@ -374,13 +369,13 @@ void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& direction,
 
 class LitVolume::OnOneRay final : public MediumOnRay {
  public:
-  OnOneRay(const LitVolume& lit, const glm::dvec3& direction)
+  OnOneRay(const LitVolume& lit, const glm::dvec3& origin, const glm::dvec3& direction)
       : lit_(lit),
         direction_(direction),
         phase_(static_cast<float>(Phase(lit.volume_.optics().phase,
                                         glm::dot(direction, lit.sources_.light.direction.seen)))),
         sky_(lit.sky_.Towards(direction, lit.chi_)) {
-    if (lit.orders_) look_ = lit.orders_->LookAlong(direction);
+    if (lit.orders_) look_ = lit.orders_->LookAlong(origin, direction);
   }
 
   void AddSource(const LightOnPoint& light, double density, Spectrum& sum) const override {
@@ -431,9 +426,9 @@ class LitVolume::OnOneRay final : public MediumOnRay {
   std::optional<VolumeOrders::Look> look_;  // nothing: the first order alone
 };
 
-std::unique_ptr<const MediumOnRay> LitVolume::OnRay(const glm::dvec3& /*origin*/,
+std::unique_ptr<const MediumOnRay> LitVolume::OnRay(const glm::dvec3& origin,
                                                     const glm::dvec3& direction) const {
-  return std::make_unique<OnOneRay>(*this, direction);
+  return std::make_unique<OnOneRay>(*this, origin, direction);
 }
 
 }  // namespace alpenglow::renderer

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/media/volume_orders.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -19,10 +20,8 @@ constexpr double kLeastPeak = 1e-6;
 // The mean cosine of a phase function of Henyey and Greenstein with a peak of 10^-6 (g^4), which
 // stands for those without one in the moments.
 constexpr double kNearlyIsotropic = 0.032;
-// Optical depth of a cell, without the forward peak, below which smaller cells change nothing.
-constexpr double kVolumeCellDepth = 0.3;
-constexpr int kLeastCells = 6, kMostCellsAlong = 400;  // of the finest grid, along an axis
-constexpr int kMostSamplesPerSide = 4;
+// Light from larger optical depths is not seen.
+constexpr double kDeepestSeen = 16.0;
 constexpr double kY00 = 0.28209479177387814;  // 1 / sqrt(4 pi)
 
 double PeakFractionOf(const PhaseFunction& phase) {
@@ -35,24 +34,6 @@ PhaseFunction WithPeak(const PhaseFunction& phase) {
   return {.kind = PhaseKind::kHenyeyGreenstein, .g = kNearlyIsotropic};
 }
 
-/// Returns the number of cells of a grid along each axis of a box.
-std::array<int, 3> CellCountOf(const glm::dvec3& size_m, double side_m, int least) {
-  std::array<int, 3> count{};
-  for (int axis = 0; axis < 3; ++axis)
-    count[static_cast<std::size_t>(axis)] =
-        std::clamp(static_cast<int>(std::lround(size_m[axis] / side_m)), least, kMostCellsAlong);
-  return count;
-}
-
-/// Returns the number of samples along each side of a cell that resolves a density.
-int SamplesPerSide(const LocalBody& volume, double most_cells) {
-  const auto samples = volume.Samples();
-  if (!samples) return 2;
-  const double all = 1.0 * (*samples)[0] * (*samples)[1] * (*samples)[2];
-  return std::clamp(static_cast<int>(std::lround(std::cbrt(all / most_cells))), 2,
-                    kMostSamplesPerSide);
-}
-
 }  // namespace
 
 bool HasOrdersOf(const PhaseFunction& phase) {
@@ -62,10 +43,8 @@ bool HasOrdersOf(const PhaseFunction& phase) {
 VolumeOrders::VolumeOrders(const LocalBody& volume, const VolumeIllumination& light,
                            double most_cells)
     : volume_(volume),
-      frame_from_body_(volume.placement().across, volume.placement().ahead, volume.placement().up),
       to_sun_(light.to_sun),
-      has_peak_(PeakFractionOf(volume.optics().phase) >= kLeastPeak),
-      samples_per_side_(SamplesPerSide(volume, most_cells)) {
+      has_peak_(PeakFractionOf(volume.optics().phase) >= kLeastPeak) {
   const MediumOptics& optics = volume.optics();
   const std::size_t bands = optics.extinction_per_m.size();
   const CloudOptics white(WithPeak(optics.phase), 1.0);
@@ -78,112 +57,76 @@ VolumeOrders::VolumeOrders(const LocalBody& volume, const VolumeIllumination& li
     optics_.push_back(std::make_shared<const CloudOptics>(white.WithAlbedo(albedo)));
     extinction_per_m_[band] = optics_.back()->extinction_scale() * extinction_per_m;
   }
-  cells_ = Cells(most_cells);
+  MakeCells(most_cells);
   SolveAll(light);
 }
 
-glm::dvec3 VolumeOrders::InBody(const glm::dvec3& point) const {
-  return (point - volume_.placement().bottom) * frame_from_body_;
-}
-
-glm::dvec3 VolumeOrders::InFrame(const glm::dvec3& in_body) const {
-  return volume_.placement().bottom + frame_from_body_ * in_body;
-}
-
-template <typename Visit>
-void VolumeOrders::EachSample(const CloudBox& cell, const Visit& visit) const {
-  const glm::dvec3 step = (cell.high - cell.low) / static_cast<double>(samples_per_side_);
-  for (int z = 0; z < samples_per_side_; ++z) {
-    for (int y = 0; y < samples_per_side_; ++y) {
-      for (int x = 0; x < samples_per_side_; ++x) {
-        const glm::dvec3 point = InFrame(cell.low + (glm::dvec3(x, y, z) + 0.5) * step);
-        const double density = volume_.DensityAt(point);
-        if (density > 0.0) visit(point, density);
-      }
-    }
+void VolumeOrders::MakeCells(double most_cells) {
+  const std::size_t bands = extinction_per_m_.size();
+  std::size_t thickest = 0;
+  for (std::size_t band = 1; band < bands; ++band)
+    if (extinction_per_m_[band] > extinction_per_m_[thickest]) thickest = band;
+  const double thickest_per_m = extinction_per_m_[thickest];
+  cells_.push_back(std::make_unique<const VolumeCells>(
+      volume_, VolumeCells::Options{thickest_per_m, thickest_per_m, most_cells}));
+  cells_of_band_.assign(bands, 0);
+  if (!cells_.front()->is_limited()) return;
+  std::vector<double> scaled_per_m{thickest_per_m};
+  for (std::size_t band = 0; band < bands; ++band) {
+    const auto same = std::ranges::find(scaled_per_m, extinction_per_m_[band]);
+    cells_of_band_[band] = static_cast<std::size_t>(same - scaled_per_m.begin());
+    if (same != scaled_per_m.end()) continue;
+    scaled_per_m.push_back(extinction_per_m_[band]);
+    cells_.push_back(std::make_unique<const VolumeCells>(
+        volume_, VolumeCells::Options{thickest_per_m, scaled_per_m.back(), most_cells}));
   }
 }
 
-CloudCellContent VolumeOrders::ContentOf(const CloudBox& cell) const {
-  double sum = 0.0;
-  int dense = 0;
-  EachSample(cell, [&](const glm::dvec3&, double density) {
-    sum += density;
-    ++dense;
-  });
-  if (dense == 0) return {};
-  return {sum / dense, dense / std::pow(samples_per_side_, 3)};
+std::vector<CloudHarmonics> VolumeOrders::SunIn(const CloudCells& cells, std::size_t band) const {
+  const glm::dvec3 travel = CellsOf(band).DirectionInCells(-to_sun_);
+  std::vector<CloudHarmonics> moments(cells.full(), CloudHarmonicsOf(travel));
+  const std::vector<float> beam = CellsOf(band).BeamIn(cells, travel, extinction_per_m_[band]);
+  for (std::size_t cell = 0; cell < moments.size(); ++cell)
+    for (float& moment : moments[cell]) moment *= beam[cell];
+  return moments;
 }
 
-std::vector<std::shared_ptr<const CloudCells>> VolumeOrders::Cells(double most_cells) const {
-  const glm::dvec3& size_m = volume_.placement().size_m;
-  double thickest_per_m = 0.0;
-  for (std::size_t band = 0; band < optics_.size(); ++band)
-    thickest_per_m = std::max(thickest_per_m, extinction_per_m_[band]);
-  const double least_side_m = std::cbrt(size_m.x * size_m.y * size_m.z / most_cells);
-  const double side_m = std::max(least_side_m, kVolumeCellDepth / thickest_per_m);
-  std::vector<std::shared_ptr<const CloudCells>> grids;
-  for (const int times : {4, 2, 1}) {
-    CloudCellLattice lattice{CellCountOf(size_m, times * side_m, std::max(kLeastCells / times, 1)),
-                             glm::dvec3(-0.5 * size_m.x, -0.5 * size_m.y, 0.0), glm::dvec3(1.0)};
-    for (int axis = 0; axis < 3; ++axis) {
-      int& count = lattice.count[static_cast<std::size_t>(axis)];
-      lattice.cell_m[axis] = size_m[axis] / count;
-      // Light just outside of the body is that of the cells around it.
-      lattice.origin_m[axis] -= lattice.cell_m[axis];
-      count += 2;
-    }
-    grids.push_back(std::make_shared<const CloudCells>(
-        lattice, [&](const CloudBox& cell) { return ContentOf(cell); }));
-  }
-  return grids;
-}
-
-CloudHarmonics VolumeOrders::SunIn(const CloudBox& cell, double scaled_per_m,
-                                   const VolumeIllumination& light) const {
-  const glm::dvec3 step = (cell.high - cell.low) / static_cast<double>(samples_per_side_);
-  const glm::dvec3 to_sun = light.to_sun * frame_from_body_;
-  // The mean length of a beam in the part of the cell that a sample stands for.
-  const double chord_m = 1.0 / (std::abs(to_sun.x) / step.x + std::abs(to_sun.y) / step.y +
-                                std::abs(to_sun.z) / step.z);
-  double sum = 0.0, densities = 0.0;
-  EachSample(cell, [&](const glm::dvec3& point, double density) {
-    const double half = 0.5 * scaled_per_m * density * chord_m;
-    // The mean of the beam over this length, relative to that in its middle.
-    const double mean = half > 1e-3 ? std::sinh(std::min(half, 30.0)) / half : 1.0;
-    sum += density * std::min(mean * std::exp(-scaled_per_m * light.sun_column_m(point)), 1.0);
-    densities += density;
-  });
-  CloudHarmonics beam = CloudHarmonicsOf(-to_sun);
-  const auto irradiance = static_cast<float>(densities > 0.0 ? sum / densities : 0.0);
-  for (float& moment : beam) moment *= irradiance;
-  return beam;
-}
-
-CloudHarmonics VolumeOrders::OwnIn(const CloudBox& cell, std::size_t band,
-                                   const VolumeIllumination& light) const {
+CloudHarmonics VolumeOrders::LampsIn(const CloudBox& cell, std::size_t band,
+                                     const VolumeIllumination& light) const {
   // The mean of 1 / r^2 over a ball is that at its radius times 0.58; the ball has the volume of the
   // part of a cell that a sample stands for.
   constexpr double kLeastDistance = 0.36;
-  const glm::dvec3 step = (cell.high - cell.low) / static_cast<double>(samples_per_side_);
+  const VolumeCells& cells = CellsOf(band);
+  const glm::dvec3 step = (cell.high - cell.low) / static_cast<double>(cells.samples_per_side());
   const double least_m = kLeastDistance * std::cbrt(step.x * step.y * step.z);
-  CloudHarmonics own{};
+  CloudHarmonics sum{};
   double densities = 0.0;
-  EachSample(cell, [&](const glm::dvec3& point, double density) {
+  cells.EachSample(cell, [&](const glm::dvec3& point, double density) {
     densities += density;
-    if (!light.lamps) return;
     for (const LampBeam& beam : light.lamps(point, band, least_m)) {
-      const CloudHarmonics of = CloudHarmonicsOf(beam.travel * frame_from_body_);
+      const double column_m = cells.is_limited() ? cells.Column(point, -beam.travel, beam.away_m)
+                                                 : beam.column_m;
+      const CloudHarmonics of = CloudHarmonicsOf(cells.DirectionInCells(beam.travel));
       const auto weight = static_cast<float>(density * beam.irradiance *
-                                             std::exp(-extinction_per_m_[band] * beam.column_m));
-      for (std::size_t k = 0; k < own.size(); ++k) own[k] += weight * of[k];
+                                             std::exp(-extinction_per_m_[band] * column_m));
+      for (std::size_t k = 0; k < kCloudMoments; ++k) sum[k] += weight * of[k];
     }
   });
-  for (float& moment : own) moment /= static_cast<float>(std::max(densities, 1e-30));
-  if (light.emits) {
-    own[0] += static_cast<float>(volume_.optics().emission_per_m[band] /
-                                 (extinction_per_m_[band] * optics_[band]->scaled_albedo() * kY00));
-  }
+  for (float& moment : sum) moment /= static_cast<float>(std::max(densities, 1e-30));
+  return sum;
+}
+
+std::vector<CloudHarmonics> VolumeOrders::OwnIn(const CloudCells& cells, std::size_t band,
+                                                const VolumeIllumination& light) const {
+  std::vector<CloudHarmonics> own(cells.full());
+  const double emission_per_m = light.emits ? volume_.optics().emission_per_m[band] : 0.0;
+  const double emitted =
+      emission_per_m / (extinction_per_m_[band] * optics_[band]->scaled_albedo() * kY00);
+  tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t cell) {
+    const glm::dvec3 middle = cells.Middle(cell), half_m = 0.5 * cells.cell_m();
+    if (light.lamps) own[cell] = LampsIn({middle - half_m, middle + half_m}, band, light);
+    own[cell][0] += static_cast<float>(emitted);
+  });
   return own;
 }
 
@@ -192,7 +135,7 @@ void VolumeOrders::SolveAll(const VolumeIllumination& light) {
   sun_.resize(bands);
   sky_.resize(bands);
   own_.resize(bands);
-  if (cells_.back()->full() == 0) return;
+  if (cells_.front()->grids().back()->full() == 0) return;
   const SpectrumOf<double>& extinction_per_m = volume_.optics().extinction_per_m;
   for (std::size_t band = 0; band < bands; ++band) {
     // Without scattering there is no light of higher orders.
@@ -207,46 +150,58 @@ void VolumeOrders::SolveAll(const VolumeIllumination& light) {
 }
 
 void VolumeOrders::Solve(std::size_t band, const VolumeIllumination& light) {
-  const CloudMomentSolver solver(cells_, volume_.optics().extinction_per_m[band], optics_[band]);
+  const VolumeCells& cells = CellsOf(band);
+  const CloudMomentSolver solver(cells.grids(), volume_.optics().extinction_per_m[band],
+                                 optics_[band]);
   const auto moments = [&](const CloudIllumination& of) {
     return std::make_shared<const CloudMoments>(solver.Light(of).moments);
   };
-  const double scaled_per_m = extinction_per_m_[band];
-  if (light.sun_column_m && !sun_[band]) {
-    sun_[band] = moments({.entering = nullptr, .incident = [&](const CloudBox& cell) {
-                            return SunIn(cell, scaled_per_m, light);
-                          }});
+  if (light.has_sun && !sun_[band]) {
+    sun_[band] = moments(
+        {.entering = nullptr, .incident = [&](const CloudCells& of) { return SunIn(of, band); }});
   }
   if (light.sky) {
-    sky_[band] =
-        moments({.entering =
-                     [&](const glm::dvec3& travel) {
-                       return static_cast<double>(light.sky(-(frame_from_body_ * travel))[band]);
-                     },
-                 .incident = nullptr});
+    sky_[band] = moments({.entering =
+                              [&](const glm::dvec3& travel) {
+                                return static_cast<double>(
+                                    light.sky(-cells.DirectionInFrame(travel))[band]);
+                              },
+                          .incident = nullptr});
   }
   const bool emits = light.emits && volume_.optics().emission_per_m[band] > 0.0;
   if (light.lamps || emits) {
-    own_[band] = moments({.entering = nullptr, .incident = [&](const CloudBox& cell) {
-                            return OwnIn(cell, band, light);
+    own_[band] = moments({.entering = nullptr, .incident = [&](const CloudCells& of) {
+                            return OwnIn(of, band, light);
                           }});
   }
 }
 
-VolumeOrders::Look VolumeOrders::LookAlong(const glm::dvec3& look) const {
-  Look along{look, optics_.front()->peak().AtAngle(glm::dot(look, to_sun_)), {}};
-  for (const auto& optics : optics_)
-    along.factors.push_back(optics->SourceFactors(-(look * frame_from_body_)));
+VolumeOrders::Look VolumeOrders::LookAlong(const glm::dvec3& eye, const glm::dvec3& look) const {
+  Look along{look, optics_.front()->peak().AtAngle(glm::dot(look, to_sun_)), {}, {}};
+  for (std::size_t band = 0; band < optics_.size(); ++band)
+    along.factors.push_back(
+        optics_[band]->SourceFactors(-CellsOf(band).DirectionInCells(look)));
+  for (std::size_t i = 0; i < cells_.size() && cells_.front()->is_limited(); ++i) {
+    const auto band = static_cast<std::size_t>(std::ranges::find(cells_of_band_, i) -
+                                               cells_of_band_.begin());
+    along.ways.push_back(cells_[i]->WayAlong(eye, look, kDeepestSeen / extinction_per_m_[band]));
+  }
   return along;
 }
 
 VolumeOrders::Scattered VolumeOrders::At(const Place& place, const Look& look) const {
   const std::size_t bands = optics_.size();
   Scattered light{Spectrum(bands), Spectrum(bands), Spectrum(bands)};
-  const CloudCells::Mixture around = cells_.back()->Around(InBody(place.point));
+  std::vector<CloudCells::Mixture> around;  // of each of cells_
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    around.push_back(cells_[i]->Around(
+        look.ways.empty() ? place.point : look.ways[i].At(place.column_to_eye_m)));
+  }
   for (std::size_t band = 0; band < bands; ++band) {
     const auto source = [&](const std::shared_ptr<const CloudMoments>& moments) {
-      return moments ? std::max(moments->Source(around, look.factors[band]), 0.0F) : 0.0F;
+      return moments ? std::max(
+                           moments->Source(around[cells_of_band_[band]], look.factors[band]), 0.0F)
+                     : 0.0F;
     };
     const double first = FirstOfSun(look, band, place.column_to_sun_m + place.column_to_eye_m) *
                          std::exp(-extinction_per_m_[band] * place.column_to_sun_m);

@@ -28,7 +28,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
@@ -37,6 +36,7 @@
 #include "renderer/cloud_light/cloud_moments.h"
 #include "renderer/cloud_light/cloud_optics.h"
 #include "renderer/media/local_body.h"
+#include "renderer/media/volume_cells.h"
 
 namespace alpenglow::renderer {
 
@@ -50,13 +50,13 @@ struct LampBeam {
   glm::dvec3 travel;  // unit
   double irradiance;  // without the body on its way [W m^-2 nm^-1]
   double column_m;    // of the body on its way
+  double away_m;      // of the lamp from the point
 };
 
 /// The sources of light in a body. Functions are called from many threads.
 struct VolumeIllumination {
   glm::dvec3 to_sun{0.0, 0.0, 1.0};  // in the frame of SceneGround, unit
-  /// Returns the column of the body from a point in it to the sun [m]; null: no sun.
-  std::function<double(const glm::dvec3& point)> sun_column_m;
+  bool has_sun = false;
   /// Returns the radiance that arrives from a direction, in any unit; null: none.
   std::function<Spectrum(const glm::dvec3& from)> sky;
   /// Returns the beams of lamps at a point; null: no lamps.
@@ -86,9 +86,10 @@ class VolumeOrders {
     glm::dvec3 direction;
     ForwardPeak::Angle peak;              // of the sun
     std::vector<CloudHarmonics> factors;  // [band]
+    std::vector<VolumeWay> ways;          // through each of the limited bodies
   };
   /// @param look  from the eye, unit.
-  [[nodiscard]] Look LookAlong(const glm::dvec3& look) const;
+  [[nodiscard]] Look LookAlong(const glm::dvec3& eye, const glm::dvec3& look) const;
 
   /// A point of a body on a ray from the eye.
   struct Place {
@@ -112,30 +113,27 @@ class VolumeOrders {
  private:
   [[nodiscard]] double FirstOfSun(const Look& look, std::size_t band, double column_m) const;
   [[nodiscard]] double PeakDepth(std::size_t band, double column_m) const;
-  [[nodiscard]] glm::dvec3 InBody(const glm::dvec3& point) const;
-  [[nodiscard]] glm::dvec3 InFrame(const glm::dvec3& in_body) const;
-  [[nodiscard]] std::vector<std::shared_ptr<const CloudCells>> Cells(double most_cells) const;
+  void MakeCells(double most_cells);
   void Solve(std::size_t band, const VolumeIllumination& light);
   void SolveAll(const VolumeIllumination& light);
-  [[nodiscard]] CloudCellContent ContentOf(const CloudBox& cell) const;
-  /// Returns the moments of the sun's beam in a cell for unit irradiance.
-  [[nodiscard]] CloudHarmonics SunIn(const CloudBox& cell, double scaled_per_m,
-                                     const VolumeIllumination& light) const;
+  /// Returns the moments of the sun's beam in full cells for unit irradiance.
+  [[nodiscard]] std::vector<CloudHarmonics> SunIn(const CloudCells& cells, std::size_t band) const;
   /// Returns those of lamps and emission.
-  [[nodiscard]] CloudHarmonics OwnIn(const CloudBox& cell, std::size_t band,
-                                     const VolumeIllumination& light) const;
-  /// Calls visit(point, density) for points of a cell in the body.
-  template <typename Visit>
-  void EachSample(const CloudBox& cell, const Visit& visit) const;
+  [[nodiscard]] std::vector<CloudHarmonics> OwnIn(const CloudCells& cells, std::size_t band,
+                                                  const VolumeIllumination& light) const;
+  [[nodiscard]] CloudHarmonics LampsIn(const CloudBox& cell, std::size_t band,
+                                       const VolumeIllumination& light) const;
+  [[nodiscard]] const VolumeCells& CellsOf(std::size_t band) const {
+    return *cells_[cells_of_band_[band]];
+  }
 
   const LocalBody& volume_;
-  glm::dmat3 frame_from_body_;
   glm::dvec3 to_sun_;
   bool has_peak_;
-  int samples_per_side_;                                    // of a cell
   std::vector<std::shared_ptr<const CloudOptics>> optics_;  // [band]
   SpectrumOf<double> extinction_per_m_;
-  std::vector<std::shared_ptr<const CloudCells>> cells_;  // from the coarsest to the finest
+  std::vector<std::unique_ptr<const VolumeCells>> cells_;  // one for all bands if none is limited
+  std::vector<std::size_t> cells_of_band_;                 // in cells_
   // Moments of each band; null where there is no light:
   std::vector<std::shared_ptr<const CloudMoments>> sun_, sky_, own_;
 };

@@ -55,7 +55,7 @@ BodyLight LightThrough(const LocalVolume& volume, const VolumeOrders& orders, co
                        float more = 0.0F) {
   const LocalMedia media({std::shared_ptr<const LocalMedium>(&volume, [](const LocalMedium*) {})},
                          1);
-  const VolumeOrders::Look look = orders.LookAlong(ray.direction);
+  const VolumeOrders::Look look = orders.LookAlong(ray.origin, ray.direction);
   const auto source = [&](double, const glm::dvec3& point, std::span<const double> densities,
                           std::span<const double> columns_m) {
     const double to_sun_m = volume.Column(point, to_sun, std::numeric_limits<double>::infinity());
@@ -75,7 +75,6 @@ const glm::dvec3 kSunOverSmoke = glm::normalize(glm::dvec3(0.7, 0.3, 0.6));
 VolumeIllumination InUniformSky(bool emits = false) {
   const auto sky = [](const glm::dvec3&) { return Spectrum(1, 1.0F); };
   return {.to_sun = kSunOverSmoke,
-          .sun_column_m = nullptr,
           .sky = sky,
           .lamps = nullptr,
           .emits = emits};
@@ -170,11 +169,11 @@ TEST(VolumeOrders, AFarLampIsASun) {
     return ball.Column(point, kSunOverSmoke, std::numeric_limits<double>::infinity());
   };
   const auto lamp = [&](const glm::dvec3& point, std::size_t, double) {
-    return std::vector<LampBeam>{{-kSunOverSmoke, 1.0, column(point)}};
+    return std::vector<LampBeam>{{-kSunOverSmoke, 1.0, column(point), 1e9}};
   };
   const VolumeOrders orders(ball,
                             {.to_sun = kSunOverSmoke,
-                             .sun_column_m = column,
+                             .has_sun = true,
                              .sky = nullptr,
                              .lamps = lamp,
                              .emits = false},
@@ -187,7 +186,7 @@ TEST(VolumeOrders, AFarLampIsASun) {
     const glm::dvec3 middle(0.0, 0.0, 60.0);
     EXPECT_GT(higher, 0.1 * sun);
     EXPECT_LT(higher, sun) << "the sun has the first order, too";
-    const VolumeOrders::Look look = orders.LookAlong(ray.direction);
+    const VolumeOrders::Look look = orders.LookAlong(ray.origin, ray.direction);
     const double first =
         orders.FirstOfLamp(glm::dot(ray.direction, kSunOverSmoke), 0, 2.0 * column(middle)) *
         std::exp(-orders.extinction_per_m()[0] * column(middle));
@@ -210,7 +209,7 @@ TEST(VolumeOrders, ATurnedBodyHasTheSameLight) {
     const VolumeOrders orders(
         ball,
         {.to_sun = to_sun,
-         .sun_column_m = [&](const glm::dvec3& point) { return ball.Column(point, to_sun, 1e6); },
+         .has_sun = true,
          .sky = nullptr,
          .lamps = nullptr,
          .emits = false},
@@ -236,7 +235,7 @@ TEST(VolumeOrders, EmptyAndBlackBodiesScatterNothing) {
   for (const double extinction_per_m : {0.0, 1e-12, 0.05}) {
     const LocalVolume ball = SmokeBall(SmokeOptics(extinction_per_m, 0.0, 0.5), glm::dvec3(100.0));
     const VolumeOrders orders(ball, InUniformSky(), 1000.0);
-    const VolumeOrders::Look look = orders.LookAlong({1.0, 0.0, 0.0});
+    const VolumeOrders::Look look = orders.LookAlong({-500.0, 0.0, 50.0}, {1.0, 0.0, 0.0});
     const VolumeOrders::Scattered light = orders.At({{0.0, 0.0, 50.0}, 50.0, 50.0}, look);
     EXPECT_EQ(light.sky[0], 0.0F);
     EXPECT_EQ(light.sun[0], 0.0F);
