@@ -88,8 +88,10 @@ CloudCells::CloudCells(const CloudCellLattice& lattice, const Content& content)
     : count_(lattice.count),
       origin_m_(lattice.origin_m),
       cell_m_(lattice.cell_m),
-      is_periodic_(false) {
+      is_periodic_(false),
+      is_body_(true) {
   Fill(content);
+  WeightNeighboursByDepth();
 }
 
 void CloudCells::Fill(const Content& content) {
@@ -202,7 +204,7 @@ void CloudCells::FindNeighbours() {
       }
       const double span_m = found * cell_m_[static_cast<int>(axis)];
       neighbours_[cell][axis] = {lane[0], lane[1],
-                                 found > 0 ? static_cast<float>(1.0 / span_m) : 0.0F};
+                                 found > 0 ? static_cast<float>(1.0 / span_m) : 0.0F, 0.0F};
     }
   }
 }
@@ -281,6 +283,28 @@ CloudCells::Mixture CloudCells::Around(const glm::dvec3& point) const {
   }
   for (int i = 0; i < mixture.count; ++i) mixture.weight[static_cast<std::size_t>(i)] /= sum;
   return mixture;
+}
+
+void CloudCells::WeightNeighboursByDepth() {
+  std::vector<float> extinction_of_lane(lanes(), 0.0F);
+  for (std::size_t cell = 0; cell < full(); ++cell)
+    extinction_of_lane[lane_[cell]] = extinction_per_m_[cell];
+  for (std::size_t cell = 0; cell < full(); ++cell) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Neighbours& both = neighbours_[cell][axis];
+      // Slope towards a neighbour: the difference over the distance in optical depth, times extinction.
+      const auto towards = [&](std::uint32_t beside) {
+        return 2.0F * extinction_per_m_[cell] /
+               (static_cast<float>(cell_m_[static_cast<int>(axis)]) *
+                (extinction_per_m_[cell] + extinction_of_lane[beside]));
+      };
+      const float after = both.after == lane_[cell] ? 0.0F : towards(both.after);
+      const float before = both.before == lane_[cell] ? 0.0F : towards(both.before);
+      const float mean = after > 0.0F && before > 0.0F ? 0.5F : 1.0F;
+      both.per_m = mean * 0.5F * (after + before);
+      both.bend_per_m = mean * 0.5F * (after - before);
+    }
+  }
 }
 
 std::size_t CloudCells::bytes() const {

@@ -53,6 +53,8 @@ class CloudCells {
   [[nodiscard]] const glm::dvec3& cell_m() const { return cell_m_; }
   [[nodiscard]] CloudCellLattice lattice() const { return {count_, origin_m_, cell_m_}; }
   [[nodiscard]] bool is_periodic() const { return is_periodic_; }
+  /// Returns whether these are cells of any medium in an open box.
+  [[nodiscard]] bool is_body() const { return is_body_; }
   [[nodiscard]] std::size_t full() const { return extinction_per_m_.size(); }
   /// Returns the number of stored cells.
   [[nodiscard]] std::size_t size() const { return place_.size(); }
@@ -81,10 +83,12 @@ class CloudCells {
   /// Returns the trilinear mixture of the stored ones of eight neighbours.
   [[nodiscard]] Mixture Around(const glm::dvec3& point) const;
 
-  /// The stored neighbours of a full cell that are full, along one axis.
+  /// The stored neighbours of a full cell that are full, along one axis. The slope of a value is
+  /// per_m (after - before) + bend_per_m (before + after - 2 here).
   struct Neighbours {
     std::uint32_t before, after;  // places among lanes; that of the cell itself if it has none
-    float per_m;                  // 1 / distance between both; 0 if there is none
+    float per_m;                  // 1 / distance between both in a field; 0 if there is none
+    float bend_per_m;             // 0 in a field
   };
   [[nodiscard]] const std::array<Neighbours, 3>& NeighboursOf(std::size_t full_cell) const {
     return neighbours_[full_cell];
@@ -116,10 +120,12 @@ class CloudCells {
   void StoreCells(const std::vector<char>& has_cloud);
   void FindRuns();
   void FindNeighbours();
+  /// Makes slopes those of a value that is linear in optical depth on both sides of a cell.
+  void WeightNeighboursByDepth();
 
   std::array<int, 3> count_{};
   glm::dvec3 origin_m_{0.0}, cell_m_{1.0};
-  bool is_periodic_ = true;
+  bool is_periodic_ = true, is_body_ = false;
   std::vector<std::int32_t> stored_;     // of each place: number of the stored cell, or -1
   std::vector<std::uint32_t> place_;     // of each stored cell
   std::vector<std::uint32_t> lane_;      // of each stored cell

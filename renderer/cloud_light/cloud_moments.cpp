@@ -58,6 +58,24 @@ struct CloudTrack {
   glm::dvec2 leaves_at_m{0.0};  // in the last cell, from its corner
 };
 
+/// Subtracts from the offsets of segments their mean over each level.
+void CentreOffsets(std::vector<CloudTrackStep>& steps) {
+  for (std::size_t first = 0; first < steps.size();) {
+    std::size_t end = first;
+    std::array<float, 3> sum{};
+    float length_m = 0.0F;
+    for (; end < steps.size() && steps[end].level == steps[first].level; ++end) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        sum[axis] += steps[end].length_m * steps[end].offsets_m[axis];
+      length_m += steps[end].length_m;
+    }
+    for (; first < end; ++first) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        steps[first].offsets_m[axis] -= sum[axis] / length_m;
+    }
+  }
+}
+
 /// Returns the steps from the plane where tracks enter to the other one. Tracks of different
 /// directions enter columns at different places (by Halton's points), none near a border.
 CloudTrack TrackAlong(const CloudCells& cells, const glm::dvec3& travel, int number) {
@@ -81,9 +99,14 @@ CloudTrack TrackAlong(const CloudCells& cells, const glm::dvec3& travel, int num
         next_m.x < next_m.y ? (next_m.x < next_m.z ? 0 : 2) : (next_m.y < next_m.z ? 1 : 2);
     const double middle_m = 0.5 * (at_m + next_m[axis]);
     const glm::dvec3 centre_m = (glm::dvec3(cell[0], cell[1], cell[2]) + 0.5) * cell_m;
+    const glm::dvec3 off_m = origin_m + middle_m * travel - centre_m;
     track.steps.push_back(
-        {cell[0] - column, cell[1], cell[2], static_cast<float>(next_m[axis] - at_m),
-         static_cast<float>(glm::dot(origin_m + middle_m * travel - centre_m, travel))});
+        {cell[0] - column,
+         cell[1],
+         cell[2],
+         static_cast<float>(next_m[axis] - at_m),
+         static_cast<float>(glm::dot(off_m, travel)),
+         {static_cast<float>(off_m.x), static_cast<float>(off_m.y), static_cast<float>(off_m.z)}});
     track.shifts += cell[0] != column ? 1 : 0;
     column = cell[0];
     least_line = std::min(least_line, cell[1]);
@@ -92,6 +115,7 @@ CloudTrack TrackAlong(const CloudCells& cells, const glm::dvec3& travel, int num
     next_m[axis] += spacing_m[axis];
     cell[static_cast<std::size_t>(axis)] += travel[axis] > 0.0 ? 1 : -1;
   }
+  CentreOffsets(track.steps);
   const CloudTrackStep& last = track.steps.back();
   track.leaves_at_m =
       glm::dvec2(origin_m + at_m * travel) - glm::dvec2(column, last.line) * glm::dvec2(cell_m);
@@ -210,6 +234,7 @@ std::vector<float> BeamIn(const CloudCells& cells, const CollidedLight& collided
 /// Arrays for the tracks of one thread.
 struct TrackRoom {
   lut::AlignedFloats source, slope_per_m, sum_m;
+  std::array<lut::AlignedFloats, 3> slopes_per_m;  // in a body
   std::vector<float> track;
 };
 
@@ -265,6 +290,9 @@ class CloudMomentSolver::Grid {
   [[nodiscard]] Swept Sweep(const CloudHarmonics* moments, const Source* source,
                             bool everywhere) const;
 
+  /// Returns 0, or in a white body the mean radiance that enters: the deeper it is, the longer takes
+  /// the solution to find it.
+  [[nodiscard]] std::vector<CloudHarmonics> FirstGuess(const Source& source) const;
   /// Solves M = K M + b, and returns M on all stored cells.
   /// @param guess  moments of a coarser grid, or null.
   [[nodiscard]] SolvedCloudMoments Solve(const Source& source, const CloudMoments* guess,
@@ -275,6 +303,9 @@ class CloudMomentSolver::Grid {
   using DirectionValues = std::vector<std::vector<float>>;
   void FillSources(const CloudHarmonics* moments, const Source* source,
                    DirectionValues& values) const;
+  /// Finds the slopes of the source along tracks, or along all axes of a body.
+  void FindSlopesAlong(std::size_t direction, TrackRoom& room) const;
+  void FindSlopes(std::size_t direction, TrackRoom& room) const;
   /// Returns the sum of the radiances with which tracks leave.
   /// @param leaving  see CloudTrackWork.
   [[nodiscard]] double Follow(std::size_t direction, float entering, bool everywhere,
@@ -318,6 +349,37 @@ void CloudMomentSolver::Grid::FillSources(const CloudHarmonics* moments, const S
   });
 }
 
+void CloudMomentSolver::Grid::FindSlopesAlong(std::size_t direction, TrackRoom& room) const {
+  const float* source = room.source.data();
+  const glm::vec3 travel(directions_[direction].travel);
+  for (std::size_t cell = 0; cell < cells_->full(); ++cell) {
+    const auto& [x, y, z] = cells_->NeighboursOf(cell);
+    room.slope_per_m.data()[cells_->Lane(cell)] =
+        travel.x * x.per_m * (source[x.after] - source[x.before]) +
+        travel.y * y.per_m * (source[y.after] - source[y.before]) +
+        travel.z * z.per_m * (source[z.after] - source[z.before]);
+  }
+}
+
+void CloudMomentSolver::Grid::FindSlopes(std::size_t direction, TrackRoom& room) const {
+  const float* source = room.source.data();
+  const glm::vec3 travel(directions_[direction].travel);
+  for (std::size_t cell = 0; cell < cells_->full(); ++cell) {
+    const std::uint32_t lane = cells_->Lane(cell);
+    const std::array<CloudCells::Neighbours, 3>& beside = cells_->NeighboursOf(cell);
+    float along = 0.0F;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const CloudCells::Neighbours& of = beside[axis];
+      const float before = source[of.before], after = source[of.after];
+      const float slope =
+          of.per_m * (after - before) + of.bend_per_m * (after + before - 2.0F * source[lane]);
+      room.slopes_per_m[axis].data()[lane] = slope;
+      along += travel[static_cast<int>(axis)] * slope;
+    }
+    room.slope_per_m.data()[lane] = along;
+  }
+}
+
 double CloudMomentSolver::Grid::Follow(std::size_t direction, float entering, bool everywhere,
                                        std::vector<float>& values, TrackRoom& room,
                                        float* leaving) const {
@@ -326,22 +388,21 @@ double CloudMomentSolver::Grid::Follow(std::size_t direction, float entering, bo
   const auto columns = static_cast<std::size_t>(cells_->count()[0]);
   if (room.source.size() == 0) {
     room.source = room.slope_per_m = room.sum_m = lut::AlignedFloats(lanes);
+    if (cells_->is_body()) room.slopes_per_m.fill(room.source);
   }
   room.track.resize(std::max(room.track.size(), CloudTrackRoom(columns, track.shifts)));
   float* source = room.source.data();
-  float* slope_per_m = room.slope_per_m.data();
   float* sum_m = room.sum_m.data();
   for (std::size_t cell = 0; cell < cells_->full(); ++cell) {
     source[cells_->Lane(cell)] = values[cell];
   }
-  const glm::vec3 travel(directions_[direction].travel);
-  for (std::size_t cell = 0; cell < cells_->full(); ++cell) {
-    const auto& [x, y, z] = cells_->NeighboursOf(cell);
-    slope_per_m[cells_->Lane(cell)] = travel.x * x.per_m * (source[x.after] - source[x.before]) +
-                                      travel.y * y.per_m * (source[y.after] - source[y.before]) +
-                                      travel.z * z.per_m * (source[z.after] - source[z.before]);
-  }
+  cells_->is_body() ? FindSlopes(direction, room) : FindSlopesAlong(direction, room);
   const CloudCells::Runs& runs = everywhere ? cells_->all_runs() : cells_->full_runs();
+  std::array<const float*, 3> slopes_per_m{};
+  if (cells_->is_body()) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      slopes_per_m[axis] = room.slopes_per_m[axis].data();
+  }
   const CloudTrackWork work{.steps = track.steps.data(),
                             .step_count = track.steps.size(),
                             .columns = columns,
@@ -351,7 +412,8 @@ double CloudMomentSolver::Grid::Follow(std::size_t direction, float entering, bo
                             .row_first = runs.row_first.data(),
                             .extinction_per_m = extinction_per_m_.data(),
                             .source = source,
-                            .slope_per_m = slope_per_m,
+                            .slope_per_m = room.slope_per_m.data(),
+                            .slopes_per_m = slopes_per_m,
                             .sum_m = sum_m,
                             .entering = entering,
                             .track = room.track.data(),
@@ -413,10 +475,22 @@ CloudMomentSolver::Grid::Swept CloudMomentSolver::Grid::Sweep(const CloudHarmoni
   return swept;
 }
 
+std::vector<CloudHarmonics> CloudMomentSolver::Grid::FirstGuess(const Source& source) const {
+  constexpr double kNearlyWhite = 0.999, kRootOf4Pi = 3.5449077018110318;
+  std::vector<CloudHarmonics> guess(cells_->full());
+  if (!cells_->is_body() || source.entering.empty() || optics_->albedo() < kNearlyWhite)
+    return guess;
+  double sum = 0.0;
+  for (std::size_t d = 0; d < kDirections; ++d)
+    sum += directions_[d].solid_angle_sr * static_cast<double>(source.entering[d]);
+  for (CloudHarmonics& of : guess) of[0] = static_cast<float>(sum / kRootOf4Pi);
+  return guess;
+}
+
 SolvedCloudMoments CloudMomentSolver::Grid::Solve(const Source& source, const CloudMoments* guess,
                                                   const CloudMomentOptions& options) const {
   const std::vector<CloudHarmonics> right_side = Sweep(nullptr, &source, false).moments;
-  std::vector<CloudHarmonics> start(cells_->full());
+  std::vector<CloudHarmonics> start = FirstGuess(source);
   if (guess != nullptr) {
     tbb::parallel_for(std::size_t{0}, cells_->full(),
                       [&](std::size_t cell) { start[cell] = guess->At(cells_->Middle(cell)); });

@@ -95,6 +95,11 @@ CloudOptics::CloudOptics(PhaseFunction phase, double albedo)
   FindFactors();
 }
 
+CloudOptics::CloudOptics(PhaseFunction phase, const PhaseFunction& peak, double albedo)
+    : phase_(std::move(phase)), peak_(peak, kCloudDegree), albedo_(albedo) {
+  FindFactors();
+}
+
 CloudOptics CloudOptics::WithAlbedo(double albedo) const {
   CloudOptics other = *this;
   other.albedo_ = albedo;

@@ -42,6 +42,9 @@ class CloudOptics {
   /// Throw InputError of ForwardPeak and for an albedo outside [0, 1].
   CloudOptics(const CloudField& field, const CloudScatterers& scatterers);
   CloudOptics(PhaseFunction phase, double albedo);
+  /// Takes a phase function whole, without delta-M, but for a peak of a fraction that does not matter.
+  /// @param peak  a phase function with such a peak.
+  CloudOptics(PhaseFunction phase, const PhaseFunction& peak, double albedo);
 
   /// Returns the optics with another albedo. Throws InputError outside [0, 1].
   [[nodiscard]] CloudOptics WithAlbedo(double albedo) const;

@@ -49,14 +49,27 @@ inline void PassClearCells(float* light, float* sum_m, float length_m) {
   }
 }
 
+/// Returns the source in the middle of a segment.
+template <bool kInSpace>
+inline Batch SourceOf(const CloudTrackWork& work, const CloudTrackStep& step, std::size_t at,
+                      const Batch& slope) {
+  const Batch source = Lanes::Load(work.source + at);
+  if constexpr (!kInSpace) return source + slope * Batch(step.offset_m);
+  const auto& [x, y, z] = work.slopes_per_m;
+  return source + Lanes::Load(x + at) * Batch(step.offsets_m[0]) +
+         Lanes::Load(y + at) * Batch(step.offsets_m[1]) +
+         Lanes::Load(z + at) * Batch(step.offsets_m[2]);
+}
+
+template <bool kInSpace>
 inline void PassCloud(const CloudTrackWork& work, const CloudTrackStep& step, std::size_t at,
                       float* tracks) {
   using namespace shared;
-  const Batch one(1.0F), half(0.5F), length(step.length_m), offset(step.offset_m);
+  const Batch one(1.0F), half(0.5F), length(step.length_m);
   for (std::size_t i = 0; i < kCloudLanes; i += Lanes::kLanes) {
     const Batch t = Lanes::Load(work.extinction_per_m + at + i) * length;
     const Batch slope = Lanes::Load(work.slope_per_m + at + i);
-    const Batch source = Lanes::Load(work.source + at + i) + slope * offset;
+    const Batch source = SourceOf<kInSpace>(work, step, at + i, slope);
     const Batch light = LoadAnywhere(tracks + i);
     const Batch left = exp(Batch(-t));
     const Batch divisor = max(t, Batch(0.03F));
@@ -81,7 +94,8 @@ inline int LineInField(const CloudTrackWork& work, int line) {
   return line < work.lines ? line : -1;
 }
 
-double Follow(const CloudTrackWork& work, int first, int end) {
+template <bool kInSpace>
+double FollowLines(const CloudTrackWork& work, int first, int end) {
   std::size_t shifts = 0;
   for (std::size_t i = 0; i < work.step_count; ++i) shifts += work.steps[i].shift != 0 ? 1 : 0;
   const std::size_t room = CloudTrackRoom(work.columns, shifts);
@@ -98,7 +112,7 @@ double Follow(const CloudTrackWork& work, int first, int end) {
         const CloudTrackRun& cells = work.runs[run];
         const std::size_t at = kCloudLanes * cells.block;
         if (cells.has_cloud) {
-          PassCloud(work, step, at, tracks.At(cells.column));
+          PassCloud<kInSpace>(work, step, at, tracks.At(cells.column));
         } else {
           PassClearCells(tracks.At(cells.column), work.sum_m + at, step.length_m);
         }
@@ -114,6 +128,11 @@ double Follow(const CloudTrackWork& work, int first, int end) {
     for (std::size_t column = 0; column < work.columns; ++column) to[column] = *tracks.At(column);
   }
   return leaving;
+}
+
+double Follow(const CloudTrackWork& work, int first, int end) {
+  return work.slopes_per_m[0] != nullptr ? FollowLines<true>(work, first, end)
+                                         : FollowLines<false>(work, first, end);
 }
 
 }  // namespace

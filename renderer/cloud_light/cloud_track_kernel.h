@@ -14,6 +14,7 @@
 // leaves the track and the light that cells receive sum to zero.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -32,6 +33,9 @@ struct CloudTrackStep {
   int level;
   float length_m;  // of the segment
   float offset_m;  // of its middle from the middle of the cell, along the track
+  /// The same along x, y and z, less the mean over the segments of a level, so that a cell emits
+  /// what the source in its middle says.
+  std::array<float, 3> offsets_m;
 };
 
 /// A run of kCloudLanes cells along x. Values of its cells are at [kCloudLanes * block].
@@ -53,9 +57,12 @@ struct CloudTrackWork {
   const float* extinction_per_m;   // scaled
   const float* source;             // J, per unit of extinction, in the middle of cells
   const float* slope_per_m;        // g
-  float* sum_m;                    // the integral of the radiance along tracks is added
-  float entering;                  // radiance of tracks where they enter the field
-  float* track;                    // room for CloudTrackRoom() floats
+  /// Slopes of the source along x, y and z, by which it differs at the middles of segments; null: g
+  /// along the track alone.
+  std::array<const float*, 3> slopes_per_m;
+  float* sum_m;    // the integral of the radiance along tracks is added
+  float entering;  // radiance of tracks where they enter the field
+  float* track;    // room for CloudTrackRoom() floats
   /// Radiance of tracks where they leave, by line and column of their last cells; null: not wanted.
   float* leaving = nullptr;
 };

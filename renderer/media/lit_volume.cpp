@@ -98,8 +98,7 @@ LitVolume::LitVolume(const LocalBody& volume, const MediaSources& sources)
       extinction_per_m_(orders_ ? orders_->extinction_per_m() : volume.optics().extinction_per_m) {}
 
 std::unique_ptr<const VolumeOrders> LitVolume::Orders() const {
-  if (volume_.orders() == ScatteringOrders::kSingle || !HasOrdersOf(volume_.optics().phase))
-    return nullptr;
+  if (volume_.orders() == ScatteringOrders::kSingle) return nullptr;
   VolumeIllumination light{.to_sun = sources_.light.direction.seen,
                            .sky = nullptr,
                            .lamps = nullptr,

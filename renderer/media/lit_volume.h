@@ -2,8 +2,7 @@
 // The light that a body (LocalBody), here also called a volume, scatters, and that it emits.
 //
 // By its ScatteringOrders it has the light of all orders (volume_orders.h), or that of the first
-// alone, as have volumes whose phase function is not of HasOrdersOf(). The first order has closed
-// forms.
+// alone, which has closed forms.
 //
 // Sunlight arrives through the air (RefractedBeam), the terrain's shadow, and every medium on its
 // path. Skylight is given by its moments (MultipleScattering) and the phase function, and attenuated

@@ -146,14 +146,12 @@ VolumeCells::VolumeCells(const LocalBody& volume, const Options& options)
       frame_from_cells_(AxesByLength(volume.placement())),
       samples_per_side_(SamplesPerSide(volume, options.most_cells)) {
   const glm::dvec3 size_m = SidesByLength(volume.placement());
-  const std::array<int, 3> finest =
-      CellCountOf(size_m, options.thickest_per_m, options.most_cells);
+  const std::array<int, 3> finest = CellCountOf(size_m, options.thickest_per_m, options.most_cells);
   lattice_ = LatticeOf(size_m, finest, 1);
   Limit(options.scaled_per_m);
   for (const int times : {4, 2, 1}) {
-    grids_.push_back(
-        std::make_shared<const CloudCells>(LatticeOf(size_m, finest, times),
-                                           [&](const CloudBox& cell) { return ContentOf(cell); }));
+    grids_.push_back(std::make_shared<const CloudCells>(
+        LatticeOf(size_m, finest, times), [&](const CloudBox& cell) { return ContentOf(cell); }));
   }
 }
 
@@ -214,9 +212,10 @@ void VolumeCells::Limit(double scaled_per_m) {
         const double wider = std::exp2(std::min(cell_m[axis] / shortest_m - 1.0, 10.0));
         for (const int side : {-1, 1}) {
           // Outermost cells are outside of the body, so that the place exists.
-          const auto beside = static_cast<std::size_t>(i + side * stride[static_cast<std::size_t>(axis)]);
+          const auto beside =
+              static_cast<std::size_t>(i + side * stride[static_cast<std::size_t>(axis)]);
           const auto most = static_cast<float>(
-              wider * std::max(kOuterDepth, 2.0 * static_cast<double>(depth[beside])));
+              wider * std::max(kOuterDepth, kGrowth * static_cast<double>(depth[beside])));
           if (here <= most) continue;
           here = most;
           changed = true;
@@ -237,20 +236,19 @@ void VolumeCells::EachStretch(const glm::dvec3& origin, const glm::dvec3& direct
   const std::optional<LineSpan> span = volume_.SpanAlong(origin, direction, length_m);
   if (!span) return;
   const glm::dvec3 start = origin + span->begin_m * direction;
-  EachCellAlong(lattice_, PointInCells(start), DirectionInCells(direction),
-                span->end_m - span->begin_m,
-                [&](const CellPlace& cell, double begin_m, double end_m) {
-                  const std::size_t place =
-                      (static_cast<std::size_t>(cell[2]) *
-                           static_cast<std::size_t>(lattice_.count[1]) +
-                       static_cast<std::size_t>(cell[1])) *
-                          static_cast<std::size_t>(lattice_.count[0]) +
-                      static_cast<std::size_t>(cell[0]);
-                  const double column_m =
-                      static_cast<double>(kept_[place]) *
-                      volume_.Column(start + begin_m * direction, direction, end_m - begin_m);
-                  return visit(span->begin_m + begin_m, span->begin_m + end_m, column_m);
-                });
+  EachCellAlong(
+      lattice_, PointInCells(start), DirectionInCells(direction), span->end_m - span->begin_m,
+      [&](const CellPlace& cell, double begin_m, double end_m) {
+        const std::size_t place =
+            (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(lattice_.count[1]) +
+             static_cast<std::size_t>(cell[1])) *
+                static_cast<std::size_t>(lattice_.count[0]) +
+            static_cast<std::size_t>(cell[0]);
+        const double column_m =
+            static_cast<double>(kept_[place]) *
+            volume_.Column(start + begin_m * direction, direction, end_m - begin_m);
+        return visit(span->begin_m + begin_m, span->begin_m + end_m, column_m);
+      });
 }
 
 double VolumeCells::Column(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -294,8 +292,8 @@ std::vector<float> VolumeCells::BeamIn(const CloudCells& cells, const glm::dvec3
                       const std::int32_t cell = cells.FullCellOf(place);
                       if (cell < 0) return true;
                       const auto i = static_cast<std::size_t>(cell);
-                      const double through = std::exp(-scaled_per_m * cells.Extinction_per_m(i) *
-                                                      (end_m - begin_m));
+                      const double through =
+                          std::exp(-scaled_per_m * cells.Extinction_per_m(i) * (end_m - begin_m));
                       lost_m2[i] += area_m2 * left * (1.0 - through);
                       left *= through;
                       return left > 1e-7;
@@ -303,8 +301,8 @@ std::vector<float> VolumeCells::BeamIn(const CloudCells& cells, const glm::dvec3
     };
     for (int axis = 0; axis < 3; ++axis) {
       const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-      const double area_m2 = std::abs(travel[axis]) * cell_m[u] * cell_m[v] /
-                             (kBeamsPerSide * kBeamsPerSide);
+      const double area_m2 =
+          std::abs(travel[axis]) * cell_m[u] * cell_m[v] / (kBeamsPerSide * kBeamsPerSide);
       if (area_m2 == 0.0) continue;
       const int beams_u = kBeamsPerSide * lattice.count[static_cast<std::size_t>(u)];
       const int beams_v = kBeamsPerSide * lattice.count[static_cast<std::size_t>(v)];

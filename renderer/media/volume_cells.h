@@ -52,13 +52,14 @@ class VolumeWay {
 class VolumeCells {
  public:
   struct Options {
-    double thickest_per_m;  // scaled extinction of the thickest band at density 1, for sizes of cells
-    double scaled_per_m;    // that of which the depth of cells is limited
-    double most_cells;      // of the finest grid in the box of the body, >= 64
+    double
+        thickest_per_m;   // scaled extinction of the thickest band at density 1, for sizes of cells
+    double scaled_per_m;  // that of which the depth of cells is limited
+    double most_cells;    // of the finest grid in the box of the body, >= 64
   };
   VolumeCells(const LocalBody& volume, const Options& options);
 
-  static constexpr double kOuterDepth = 0.5, kMostDepth = 4.0;
+  static constexpr double kOuterDepth = 1.0, kMostDepth = 8.0, kGrowth = 2.0;
 
   /// Returns the grids from the coarsest to the finest. The extinction of a cell is the mean density
   /// of the limited body.
@@ -115,8 +116,8 @@ class VolumeCells {
   glm::dvec3 middle_;
   glm::dmat3 frame_from_cells_;
   int samples_per_side_;
-  CloudCellLattice lattice_;   // of the finest grid
-  std::vector<float> kept_;    // extinction relative to that of the body, of each cell of lattice_
+  CloudCellLattice lattice_;  // of the finest grid
+  std::vector<float> kept_;   // extinction relative to that of the body, of each cell of lattice_
   bool is_limited_ = false;
   std::vector<std::shared_ptr<const CloudCells>> grids_;
 };

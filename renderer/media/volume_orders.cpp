@@ -14,12 +14,15 @@
 namespace alpenglow::renderer {
 namespace {
 
+// Below this mean cosine the medium without the forward peak has moments that no phase function has.
 constexpr double kLeastMeanCosine = -0.3;
 // Below this fraction of the forward peak the tables of ForwardPeak lose their digits.
 constexpr double kLeastPeak = 1e-6;
 // The mean cosine of a phase function of Henyey and Greenstein with a peak of 10^-6 (g^4), which
-// stands for those without one in the moments.
+// stands for the peak of those without one.
 constexpr double kNearlyIsotropic = 0.032;
+// Deep bodies have light whose changes are much smaller than its error.
+constexpr double kTolerance = 1e-3;
 // Light from larger optical depths is not seen.
 constexpr double kDeepestSeen = 16.0;
 constexpr double kY00 = 0.28209479177387814;  // 1 / sqrt(4 pi)
@@ -28,26 +31,24 @@ double PeakFractionOf(const PhaseFunction& phase) {
   return LegendreCoefficients(phase, kCloudDegree + 1).back();
 }
 
-/// Returns the phase function of the moments.
-PhaseFunction WithPeak(const PhaseFunction& phase) {
-  if (PeakFractionOf(phase) >= kLeastPeak) return phase;
-  return {.kind = PhaseKind::kHenyeyGreenstein, .g = kNearlyIsotropic};
+/// Returns whether the moments are those of the medium without the forward peak.
+bool HasForwardPeak(const PhaseFunction& phase) {
+  return MeanCosine(phase) >= kLeastMeanCosine && PeakFractionOf(phase) >= kLeastPeak;
+}
+
+CloudOptics WhiteOpticsOf(const PhaseFunction& phase) {
+  if (HasForwardPeak(phase)) return {phase, 1.0};
+  return {phase, {.kind = PhaseKind::kHenyeyGreenstein, .g = kNearlyIsotropic}, 1.0};
 }
 
 }  // namespace
 
-bool HasOrdersOf(const PhaseFunction& phase) {
-  return MeanCosine(phase) >= kLeastMeanCosine && PeakFractionOf(phase) < 1.0;
-}
-
 VolumeOrders::VolumeOrders(const LocalBody& volume, const VolumeIllumination& light,
                            double most_cells)
-    : volume_(volume),
-      to_sun_(light.to_sun),
-      has_peak_(PeakFractionOf(volume.optics().phase) >= kLeastPeak) {
+    : volume_(volume), to_sun_(light.to_sun), has_peak_(HasForwardPeak(volume.optics().phase)) {
   const MediumOptics& optics = volume.optics();
   const std::size_t bands = optics.extinction_per_m.size();
-  const CloudOptics white(WithPeak(optics.phase), 1.0);
+  const CloudOptics white = WhiteOpticsOf(optics.phase);
   extinction_per_m_ = SpectrumOf<double>(bands);
   for (std::size_t band = 0; band < bands; ++band) {
     const double extinction_per_m = optics.extinction_per_m[band];
@@ -104,8 +105,8 @@ CloudHarmonics VolumeOrders::LampsIn(const CloudBox& cell, std::size_t band,
   cells.EachSample(cell, [&](const glm::dvec3& point, double density) {
     densities += density;
     for (const LampBeam& beam : light.lamps(point, band, least_m)) {
-      const double column_m = cells.is_limited() ? cells.Column(point, -beam.travel, beam.away_m)
-                                                 : beam.column_m;
+      const double column_m =
+          cells.is_limited() ? cells.Column(point, -beam.travel, beam.away_m) : beam.column_m;
       const CloudHarmonics of = CloudHarmonicsOf(cells.DirectionInCells(beam.travel));
       const auto weight = static_cast<float>(density * beam.irradiance *
                                              std::exp(-extinction_per_m_[band] * column_m));
@@ -152,7 +153,7 @@ void VolumeOrders::SolveAll(const VolumeIllumination& light) {
 void VolumeOrders::Solve(std::size_t band, const VolumeIllumination& light) {
   const VolumeCells& cells = CellsOf(band);
   const CloudMomentSolver solver(cells.grids(), volume_.optics().extinction_per_m[band],
-                                 optics_[band]);
+                                 optics_[band], {.tolerance = kTolerance});
   const auto moments = [&](const CloudIllumination& of) {
     return std::make_shared<const CloudMoments>(solver.Light(of).moments);
   };
@@ -161,12 +162,12 @@ void VolumeOrders::Solve(std::size_t band, const VolumeIllumination& light) {
         {.entering = nullptr, .incident = [&](const CloudCells& of) { return SunIn(of, band); }});
   }
   if (light.sky) {
-    sky_[band] = moments({.entering =
-                              [&](const glm::dvec3& travel) {
-                                return static_cast<double>(
-                                    light.sky(-cells.DirectionInFrame(travel))[band]);
-                              },
-                          .incident = nullptr});
+    sky_[band] =
+        moments({.entering =
+                     [&](const glm::dvec3& travel) {
+                       return static_cast<double>(light.sky(-cells.DirectionInFrame(travel))[band]);
+                     },
+                 .incident = nullptr});
   }
   const bool emits = light.emits && volume_.optics().emission_per_m[band] > 0.0;
   if (light.lamps || emits) {
@@ -179,11 +180,10 @@ void VolumeOrders::Solve(std::size_t band, const VolumeIllumination& light) {
 VolumeOrders::Look VolumeOrders::LookAlong(const glm::dvec3& eye, const glm::dvec3& look) const {
   Look along{look, optics_.front()->peak().AtAngle(glm::dot(look, to_sun_)), {}, {}};
   for (std::size_t band = 0; band < optics_.size(); ++band)
-    along.factors.push_back(
-        optics_[band]->SourceFactors(-CellsOf(band).DirectionInCells(look)));
+    along.factors.push_back(optics_[band]->SourceFactors(-CellsOf(band).DirectionInCells(look)));
   for (std::size_t i = 0; i < cells_.size() && cells_.front()->is_limited(); ++i) {
-    const auto band = static_cast<std::size_t>(std::ranges::find(cells_of_band_, i) -
-                                               cells_of_band_.begin());
+    const auto band =
+        static_cast<std::size_t>(std::ranges::find(cells_of_band_, i) - cells_of_band_.begin());
     along.ways.push_back(cells_[i]->WayAlong(eye, look, kDeepestSeen / extinction_per_m_[band]));
   }
   return along;
@@ -194,14 +194,14 @@ VolumeOrders::Scattered VolumeOrders::At(const Place& place, const Look& look) c
   Scattered light{Spectrum(bands), Spectrum(bands), Spectrum(bands)};
   std::vector<CloudCells::Mixture> around;  // of each of cells_
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    around.push_back(cells_[i]->Around(
-        look.ways.empty() ? place.point : look.ways[i].At(place.column_to_eye_m)));
+    around.push_back(cells_[i]->Around(look.ways.empty() ? place.point
+                                                         : look.ways[i].At(place.column_to_eye_m)));
   }
   for (std::size_t band = 0; band < bands; ++band) {
     const auto source = [&](const std::shared_ptr<const CloudMoments>& moments) {
-      return moments ? std::max(
-                           moments->Source(around[cells_of_band_[band]], look.factors[band]), 0.0F)
-                     : 0.0F;
+      return moments
+                 ? std::max(moments->Source(around[cells_of_band_[band]], look.factors[band]), 0.0F)
+                 : 0.0F;
     };
     const double first = FirstOfSun(look, band, place.column_to_sun_m + place.column_to_eye_m) *
                          std::exp(-extinction_per_m_[band] * place.column_to_sun_m);

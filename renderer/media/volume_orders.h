@@ -40,11 +40,6 @@
 
 namespace alpenglow::renderer {
 
-/// Returns whether the light of all orders can be solved for a phase function. Its mean cosine must be
-/// -0.3 or more: for phase functions that scatter further backwards the medium without forward peak has
-/// moments that no phase function has.
-[[nodiscard]] bool HasOrdersOf(const PhaseFunction& phase);
-
 /// The light of a lamp at a point.
 struct LampBeam {
   glm::dvec3 travel;  // unit
@@ -70,7 +65,6 @@ struct VolumeIllumination {
 class VolumeOrders {
  public:
   /// Solves with as many threads as are free; the result does not depend on their number.
-  /// @param volume  of a phase function with HasOrdersOf().
   /// @param most_cells  of the finest grid in the box of the body, >= 64.
   VolumeOrders(const LocalBody& volume, const VolumeIllumination& light,
                double most_cells = kMostCells);
