@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <limits>
-#include <numeric>
+#include <optional>
+#include <utility>
 
 namespace alpenglow::renderer {
 namespace {
@@ -21,7 +23,7 @@ constexpr double kDepthOfLeastCells = 1.25;
 constexpr int kMostSamplesPerSide = 4;
 // Beams through each side of a cell on the surface, along an axis.
 constexpr int kBeamsPerSide = 4;
-// Planes of beams are shared among this number of sums, which are added in order.
+// Lines of beams are shared among this number of sums, which are added in order.
 constexpr int kSunBeamSums = 16;
 
 /// Returns the axes of a body from the longest to the shortest side, as columns of a matrix.
@@ -88,45 +90,146 @@ int SamplesPerSide(const LocalBody& volume, double most_cells) {
 
 using CellPlace = std::array<int, 3>;
 
+/// Returns the interval of a line within a lattice; positions and steps are in cells.
+std::optional<LineSpan> SpanInLattice(const CloudCellLattice& lattice, const glm::dvec3& start,
+                                      const glm::dvec3& step, double length_m) {
+  LineSpan span{0.0, length_m};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double count = lattice.count[static_cast<std::size_t>(axis)];
+    if (step[axis] == 0.0) {
+      if (start[axis] < 0.0 || start[axis] > count) return std::nullopt;
+      continue;
+    }
+    const double low_m = -start[axis] / step[axis], high_m = (count - start[axis]) / step[axis];
+    span.begin_m = std::max(span.begin_m, std::min(low_m, high_m));
+    span.end_m = std::min(span.end_m, std::max(low_m, high_m));
+  }
+  return span.begin_m < span.end_m ? std::optional(span) : std::nullopt;
+}
+
 /// Calls visit(place, begin_m, end_m) for the cells along a ray, in order, until it returns false.
 template <typename Visit>
 void EachCellAlong(const CloudCellLattice& lattice, const glm::dvec3& origin,
                    const glm::dvec3& direction, double length_m, const Visit& visit) {
   const glm::dvec3 start = (origin - lattice.origin_m) / lattice.cell_m;
   const glm::dvec3 step = direction / lattice.cell_m;
-  double at_m = 0.0, end_m = length_m;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double count = lattice.count[static_cast<std::size_t>(axis)];
-    if (step[axis] == 0.0) {
-      if (start[axis] < 0.0 || start[axis] > count) return;
-      continue;
-    }
-    const double low_m = -start[axis] / step[axis], high_m = (count - start[axis]) / step[axis];
-    at_m = std::max(at_m, std::min(low_m, high_m));
-    end_m = std::min(end_m, std::max(low_m, high_m));
-  }
+  const std::optional<LineSpan> span = SpanInLattice(lattice, start, step, length_m);
+  if (!span) return;
   CellPlace cell{};
   glm::dvec3 next_m(std::numeric_limits<double>::infinity());
   for (int axis = 0; axis < 3; ++axis) {
-    int& index = cell[static_cast<std::size_t>(axis)];
-    const double here = start[axis] + at_m * step[axis];
-    index = std::clamp(static_cast<int>(std::floor(here)), 0,
-                       lattice.count[static_cast<std::size_t>(axis)] - 1);
+    const auto a = static_cast<std::size_t>(axis);
+    const double here = start[axis] + span->begin_m * step[axis];
+    cell[a] = std::clamp(static_cast<int>(std::floor(here)), 0, lattice.count[a] - 1);
     if (step[axis] != 0.0)
-      next_m[axis] = (index + (step[axis] > 0.0 ? 1.0 : 0.0) - start[axis]) / step[axis];
+      next_m[axis] = (cell[a] + (step[axis] > 0.0 ? 1.0 : 0.0) - start[axis]) / step[axis];
   }
-  while (at_m < end_m) {
+  double at_m = span->begin_m;
+  while (at_m < span->end_m) {
     const int axis =
         next_m.x < next_m.y ? (next_m.x < next_m.z ? 0 : 2) : (next_m.y < next_m.z ? 1 : 2);
-    const double until_m = std::clamp(next_m[axis], at_m, end_m);
+    const double until_m = std::clamp(next_m[axis], at_m, span->end_m);
     if (!visit(cell, at_m, until_m)) return;
     at_m = until_m;
-    int& index = cell[static_cast<std::size_t>(axis)];
-    index += step[axis] > 0.0 ? 1 : -1;
-    if (index < 0 || index >= lattice.count[static_cast<std::size_t>(axis)]) return;
+    const auto a = static_cast<std::size_t>(axis);
+    cell[a] += step[axis] > 0.0 ? 1 : -1;
+    if (cell[a] < 0 || cell[a] >= lattice.count[a]) return;
     next_m[axis] += std::abs(1.0 / step[axis]);
   }
 }
+
+std::size_t PlaceIn(const CloudCellLattice& lattice, const CellPlace& cell) {
+  const auto columns = static_cast<std::size_t>(lattice.count[0]);
+  const auto lines = static_cast<std::size_t>(lattice.count[1]);
+  return (static_cast<std::size_t>(cell[2]) * lines + static_cast<std::size_t>(cell[1])) * columns +
+         static_cast<std::size_t>(cell[0]);
+}
+
+/// Lowers the depth of a cell to what the cells beside it allow. Returns whether it changed.
+bool LowerDepth(const CloudCellLattice& lattice, const CellPlace& cell, std::vector<float>& depth) {
+  const glm::dvec3& cell_m = lattice.cell_m;
+  const double shortest_m = std::min({cell_m.x, cell_m.y, cell_m.z});
+  float& here = depth[PlaceIn(lattice, cell)];
+  bool changed = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double wider =
+        std::exp2(std::min(cell_m[static_cast<int>(axis)] / shortest_m - 1.0, 10.0));
+    for (const int side : {-1, 1}) {
+      CellPlace beside = cell;
+      beside[axis] += side;
+      const auto most = static_cast<float>(
+          wider * std::max(VolumeCells::kOuterDepth,
+                           2.0 * static_cast<double>(depth[PlaceIn(lattice, beside)])));
+      changed = changed || here > most;
+      here = std::min(here, most);
+    }
+  }
+  return changed;
+}
+
+/// Returns the depths of cells of the limited body.
+/// @param whole  those of the body; cells at the border of the lattice are empty.
+std::vector<float> LimitedDepths(const CloudCellLattice& lattice, const std::vector<float>& whole) {
+  std::vector<float> depth(whole.size());
+  std::ranges::transform(whole, depth.begin(), [](float of) {
+    return std::min(of, static_cast<float>(VolumeCells::kMostDepth));
+  });
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (int z = 1; z < lattice.count[2] - 1; ++z) {
+      for (int y = 1; y < lattice.count[1] - 1; ++y) {
+        for (int x = 1; x < lattice.count[0] - 1; ++x)
+          changed = LowerDepth(lattice, {x, y, z}, depth) || changed;
+      }
+    }
+  }
+  return depth;
+}
+
+/// A beam into cells of a body.
+struct SunBeam {
+  const CloudCells& cells;
+  CloudCellLattice lattice;
+  glm::dvec3 travel;
+  double scaled_per_m;
+
+  /// Adds the power that one of its parts loses, for unit irradiance, to that of each cell.
+  void Follow(const glm::dvec3& start, double area_m2, std::vector<double>& lost_m2) const {
+    double left = 1.0;
+    EachCellAlong(lattice, start, travel, std::numeric_limits<double>::infinity(),
+                  [&](const CellPlace& place, double begin_m, double end_m) {
+                    const std::int32_t full = cells.FullCellOf(place);
+                    if (full < 0) return true;
+                    const auto cell = static_cast<std::size_t>(full);
+                    const double through =
+                        std::exp(-scaled_per_m * cells.Extinction_per_m(cell) * (end_m - begin_m));
+                    lost_m2[cell] += area_m2 * left * (1.0 - through);
+                    left *= through;
+                    return left > 1e-7;
+                  });
+  }
+
+  /// Follows those of `part` of kSunBeamSums through the side of the lattice across an axis.
+  void FollowThrough(int axis, int part, std::vector<double>& lost_m2) const {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto beams = [&](int a) {
+      return kBeamsPerSide * lattice.count[static_cast<std::size_t>(a)];
+    };
+    const glm::dvec3 step_m = lattice.cell_m / static_cast<double>(kBeamsPerSide);
+    const double area_m2 = std::abs(travel[axis]) * step_m[u] * step_m[v];
+    if (area_m2 == 0.0) return;
+    glm::dvec3 start = lattice.origin_m;
+    if (travel[axis] < 0.0) start[axis] += beams(axis) * step_m[axis];
+    for (int j = beams(v) * part / kSunBeamSums; j < beams(v) * (part + 1) / kSunBeamSums; ++j) {
+      start[v] = lattice.origin_m[v] + (j + 0.5) * step_m[v];
+      for (int i = 0; i < beams(u); ++i) {
+        start[u] = lattice.origin_m[u] + (i + 0.5) * step_m[u];
+        Follow(start, area_m2, lost_m2);
+      }
+    }
+  }
+};
 
 }  // namespace
 
@@ -157,13 +260,11 @@ VolumeCells::VolumeCells(const LocalBody& volume, const Options& options)
 
 std::size_t VolumeCells::PlaceOf(const glm::dvec3& in_cells) const {
   const glm::dvec3 at = glm::floor((in_cells - lattice_.origin_m) / lattice_.cell_m);
-  std::size_t place = 0;
-  for (int axis = 2; axis >= 0; --axis) {
-    const int count = lattice_.count[static_cast<std::size_t>(axis)];
-    place = place * static_cast<std::size_t>(count) +
-            static_cast<std::size_t>(std::clamp(at[axis], 0.0, count - 1.0));
-  }
-  return place;
+  CellPlace cell{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    cell[axis] =
+        static_cast<int>(std::clamp(at[static_cast<int>(axis)], 0.0, lattice_.count[axis] - 1.0));
+  return PlaceIn(lattice_, cell);
 }
 
 double VolumeCells::DensityAt(const glm::dvec3& in_cells) const {
@@ -183,50 +284,25 @@ void VolumeCells::Limit(double scaled_per_m) {
   const glm::dvec3& cell_m = lattice_.cell_m;
   const double shortest_m = std::min({cell_m.x, cell_m.y, cell_m.z});
   const int columns = lattice_.count[0], lines = lattice_.count[1], levels = lattice_.count[2];
-  const auto size = static_cast<std::size_t>(columns) * static_cast<std::size_t>(lines) *
-                    static_cast<std::size_t>(levels);
-  std::vector<float> whole(size);  // depths of cells of the body
+  std::vector<float> whole(static_cast<std::size_t>(columns) * static_cast<std::size_t>(lines) *
+                           static_cast<std::size_t>(levels));
   tbb::parallel_for(0, lines * levels, [&](int row) {
     for (int x = 0; x < columns; ++x) {
-      const glm::dvec3 low = lattice_.origin_m + glm::dvec3(x, row % lines, row / lines) * cell_m;
+      const CellPlace cell{x, row % lines, row / lines};
+      const glm::dvec3 low = lattice_.origin_m + glm::dvec3(x, cell[1], cell[2]) * cell_m;
       double sum = 0.0, samples = 0.0;
       EachSample({low, low + cell_m}, [&](const glm::dvec3&, double density) {
         sum += density;
         samples += 1.0;
       });
-      whole[static_cast<std::size_t>(row * columns + x)] =
-          static_cast<float>(samples > 0.0 ? scaled_per_m * shortest_m * sum / samples : 0.0);
+      const double mean = samples > 0.0 ? sum / samples : 0.0;
+      whole[PlaceIn(lattice_, cell)] = static_cast<float>(scaled_per_m * shortest_m * mean);
     }
   });
-  std::vector<float> depth(size);
-  std::ranges::transform(whole, depth.begin(),
-                         [](float of) { return std::min(of, static_cast<float>(kMostDepth)); });
-  const std::array<int, 3> stride{1, columns, columns * lines};
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    for (int i = 0; i < static_cast<int>(size); ++i) {
-      float& here = depth[static_cast<std::size_t>(i)];
-      if (here <= static_cast<float>(kOuterDepth)) continue;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double wider = std::exp2(std::min(cell_m[axis] / shortest_m - 1.0, 10.0));
-        for (const int side : {-1, 1}) {
-          // Outermost cells are outside of the body, so that the place exists.
-          const auto beside =
-              static_cast<std::size_t>(i + side * stride[static_cast<std::size_t>(axis)]);
-          const auto most = static_cast<float>(
-              wider * std::max(kOuterDepth, kGrowth * static_cast<double>(depth[beside])));
-          if (here <= most) continue;
-          here = most;
-          changed = true;
-        }
-      }
-    }
-  }
-  kept_.resize(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    kept_[i] = whole[i] > 0.0F ? depth[i] / whole[i] : 1.0F;
-    is_limited_ = is_limited_ || kept_[i] < 1.0F;
+  const std::vector<float> depth = LimitedDepths(lattice_, whole);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    kept_.push_back(whole[i] > 0.0F ? depth[i] / whole[i] : 1.0F);
+    is_limited_ = is_limited_ || depth[i] < whole[i];
   }
 }
 
@@ -236,19 +312,14 @@ void VolumeCells::EachStretch(const glm::dvec3& origin, const glm::dvec3& direct
   const std::optional<LineSpan> span = volume_.SpanAlong(origin, direction, length_m);
   if (!span) return;
   const glm::dvec3 start = origin + span->begin_m * direction;
-  EachCellAlong(
-      lattice_, PointInCells(start), DirectionInCells(direction), span->end_m - span->begin_m,
-      [&](const CellPlace& cell, double begin_m, double end_m) {
-        const std::size_t place =
-            (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(lattice_.count[1]) +
-             static_cast<std::size_t>(cell[1])) *
-                static_cast<std::size_t>(lattice_.count[0]) +
-            static_cast<std::size_t>(cell[0]);
-        const double column_m =
-            static_cast<double>(kept_[place]) *
-            volume_.Column(start + begin_m * direction, direction, end_m - begin_m);
-        return visit(span->begin_m + begin_m, span->begin_m + end_m, column_m);
-      });
+  EachCellAlong(lattice_, PointInCells(start), DirectionInCells(direction),
+                span->end_m - span->begin_m,
+                [&](const CellPlace& cell, double begin_m, double end_m) {
+                  const double whole_m =
+                      volume_.Column(start + begin_m * direction, direction, end_m - begin_m);
+                  return visit(span->begin_m + begin_m, span->begin_m + end_m,
+                               static_cast<double>(kept_[PlaceIn(lattice_, cell)]) * whole_m);
+                });
 }
 
 double VolumeCells::Column(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -279,54 +350,22 @@ VolumeWay VolumeCells::WayAlong(const glm::dvec3& origin, const glm::dvec3& dire
 
 std::vector<float> VolumeCells::BeamIn(const CloudCells& cells, const glm::dvec3& travel,
                                        double scaled_per_m) const {
-  const CloudCellLattice& lattice = cells.lattice();
-  const glm::dvec3& cell_m = lattice.cell_m;
-  std::vector<std::vector<double>> sums(kSunBeamSums);
+  const SunBeam beam{cells, cells.lattice(), travel, scaled_per_m};
+  std::vector<std::vector<double>> lost_m2(kSunBeamSums, std::vector<double>(cells.full(), 0.0));
   tbb::parallel_for(0, kSunBeamSums, [&](int part) {
-    std::vector<double>& lost_m2 = sums[static_cast<std::size_t>(part)];
-    lost_m2.assign(cells.full(), 0.0);
-    const auto follow = [&](const glm::dvec3& start, double area_m2) {
-      double left = 1.0;
-      EachCellAlong(lattice, start, travel, 1e9,
-                    [&](const CellPlace& place, double begin_m, double end_m) {
-                      const std::int32_t cell = cells.FullCellOf(place);
-                      if (cell < 0) return true;
-                      const auto i = static_cast<std::size_t>(cell);
-                      const double through =
-                          std::exp(-scaled_per_m * cells.Extinction_per_m(i) * (end_m - begin_m));
-                      lost_m2[i] += area_m2 * left * (1.0 - through);
-                      left *= through;
-                      return left > 1e-7;
-                    });
-    };
-    for (int axis = 0; axis < 3; ++axis) {
-      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-      const double area_m2 =
-          std::abs(travel[axis]) * cell_m[u] * cell_m[v] / (kBeamsPerSide * kBeamsPerSide);
-      if (area_m2 == 0.0) continue;
-      const int beams_u = kBeamsPerSide * lattice.count[static_cast<std::size_t>(u)];
-      const int beams_v = kBeamsPerSide * lattice.count[static_cast<std::size_t>(v)];
-      for (int j = beams_v * part / kSunBeamSums; j < beams_v * (part + 1) / kSunBeamSums; ++j) {
-        for (int i = 0; i < beams_u; ++i) {
-          glm::dvec3 start = lattice.origin_m;
-          if (travel[axis] < 0.0)
-            start[axis] += lattice.count[static_cast<std::size_t>(axis)] * cell_m[axis];
-          start[u] += (i + 0.5) / kBeamsPerSide * cell_m[u];
-          start[v] += (j + 0.5) / kBeamsPerSide * cell_m[v];
-          follow(start, area_m2);
-        }
-      }
-    }
+    for (int axis = 0; axis < 3; ++axis)
+      beam.FollowThrough(axis, part, lost_m2[static_cast<std::size_t>(part)]);
   });
+  const glm::dvec3& cell_m = beam.lattice.cell_m;
   const double volume_m3 = cell_m.x * cell_m.y * cell_m.z;
-  std::vector<float> beam(cells.full());
-  for (std::size_t cell = 0; cell < beam.size(); ++cell) {
-    double lost_m2 = 0.0;
-    for (const std::vector<double>& sum : sums) lost_m2 += sum[cell];
-    beam[cell] =
-        static_cast<float>(lost_m2 / (scaled_per_m * cells.Extinction_per_m(cell) * volume_m3));
+  std::vector<float> irradiance;
+  for (std::size_t cell = 0; cell < cells.full(); ++cell) {
+    double sum_m2 = 0.0;
+    for (const std::vector<double>& part_m2 : lost_m2) sum_m2 += part_m2[cell];
+    irradiance.push_back(
+        static_cast<float>(sum_m2 / (scaled_per_m * cells.Extinction_per_m(cell) * volume_m3)));
   }
-  return beam;
+  return irradiance;
 }
 
 }  // namespace alpenglow::renderer

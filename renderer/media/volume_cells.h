@@ -8,10 +8,10 @@
 //
 //   2^(s - 1) max(kOuterDepth, 2 t')     s = distance between both / shortest side
 //
-// so that the depth of cells doubles from one to the next below a surface. The limited body scatters as much light as the true one,
-// because the light of a deep body depends on albedo and phase function alone. Three differences
-// remain: light spreads over some cells below a surface instead of some mean free paths, a little
-// more of it passes through, and emission and absorption of one direction likewise.
+// so that the depth of cells doubles from one to the next below a surface. A deep body of this limited
+// extinction looks like the true one, because its light depends on albedo and phase function alone.
+// Differences remain: light spreads over some cells below a surface instead of some mean free paths,
+// so that edges are soft and balls a little flat, and some more light passes through the body.
 //
 // A ray from the eye passes the true body. The light of higher orders on it is that of the limited
 // body at the same optical depth from the eye (VolumeWay).
@@ -20,10 +20,10 @@
 // cloud_moments.h enter through the plane of the first two and leave flat bodies after few cells.
 #pragma once
 
-#include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "renderer/cloud_light/cloud_cells.h"
@@ -59,7 +59,7 @@ class VolumeCells {
   };
   VolumeCells(const LocalBody& volume, const Options& options);
 
-  static constexpr double kOuterDepth = 1.0, kMostDepth = 8.0, kGrowth = 2.0;
+  static constexpr double kOuterDepth = 1.0, kMostDepth = 8.0;
 
   /// Returns the grids from the coarsest to the finest. The extinction of a cell is the mean density
   /// of the limited body.
