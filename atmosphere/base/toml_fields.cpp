@@ -44,6 +44,8 @@ TomlValue TomlSection::Checked(const TomlKey& key) const {
       return *TomlTable::Number(key.key, type.low, type.high);
     case TomlType::Kind::kNumbers:
       return *TomlTable::Numbers(key.key, type.low, type.high);
+    case TomlType::Kind::kRows:
+      return *TomlTable::Rows(key.key, type.columns, type.required_columns);
     case TomlType::Kind::kText:
       break;
   }
@@ -74,6 +76,9 @@ std::optional<std::vector<double>> TomlSection::Numbers(const std::string& key) 
 }
 std::optional<std::string> TomlSection::Text(const std::string& key) const {
   return As<std::string>(Value(key));
+}
+std::optional<TomlRows> TomlSection::Rows(const std::string& key) const {
+  return As<TomlRows>(Value(key));
 }
 std::optional<bool> TomlSection::Truth(const std::string& key) const {
   return As<bool>(Value(key));

@@ -31,16 +31,19 @@
 
 namespace alpenglow::atmosphere {
 
-using TomlValue = std::variant<bool, double, std::vector<double>, std::string>;
+using TomlRows = std::vector<std::vector<double>>;
+using TomlValue = std::variant<bool, double, std::vector<double>, std::string, TomlRows>;
 
 /// The values that a key accepts.
 struct TomlType {
-  enum class Kind { kTruth, kNumber, kNumbers, kText };
+  enum class Kind { kTruth, kNumber, kNumbers, kText, kRows };
   Kind kind = Kind::kText;
   double low = 0.0, high = 0.0;  // of numbers, and of the numbers of a list
   bool one_for_all = false;      // one number may stand for a list with one number per wavelength
-  std::vector<std::string> names = {};  // of a text; empty: any text
-  std::string expected = {};            // the names in messages: "\"y\" or \"z\""
+  std::vector<std::string> names = {};   // of a text; empty: any text
+  std::string expected = {};             // the names in messages: "\"y\" or \"z\""
+  std::vector<TomlColumn> columns = {};  // of rows
+  std::size_t required_columns = 0;      // the first ones
 };
 
 /// A key as messages and manuals show it.
@@ -63,6 +66,7 @@ class TomlSection : public TomlTable {
   [[nodiscard]] std::optional<double> Number(const std::string& key) const;
   [[nodiscard]] std::optional<std::vector<double>> Numbers(const std::string& key) const;
   [[nodiscard]] std::optional<std::string> Text(const std::string& key) const;
+  [[nodiscard]] std::optional<TomlRows> Rows(const std::string& key) const;
   [[nodiscard]] std::optional<bool> Truth(const std::string& key) const;
   /// Returns the value of a key whatever its type is.
   [[nodiscard]] std::optional<TomlValue> Value(const std::string& key) const;

@@ -101,6 +101,15 @@ void TomlTable::Fail(const std::string& key, const std::string& fault) const {
   throw InputError(fmt::format("{}:{}: {}", level_->origin, level_->LineOf(key), fault));
 }
 
+void TomlTable::FailInRow(const std::string& key, std::size_t row, const std::string& fault) const {
+  const toml::node* node = level_->Find(key);
+  const toml::node* item =
+      node != nullptr && node->is_array() ? node->as_array()->get(row) : nullptr;
+  if (item == nullptr) Fail(key, fault);
+  throw InputError(fmt::format("{}:{}: {}", level_->origin,
+                               std::max<std::size_t>(1, item->source().begin.line), fault));
+}
+
 void TomlTable::AllowOnly(const std::vector<std::string>& keys) const {
   for (const auto& [toml_key, node] : *level_->table) {
     const std::string key(toml_key.str());
@@ -135,6 +144,40 @@ std::optional<std::vector<double>> TomlTable::Numbers(const std::string& key, do
     numbers.push_back(found.number);
   }
   return numbers;
+}
+
+std::optional<std::vector<std::vector<double>>> TomlTable::Rows(
+    const std::string& key, const std::vector<TomlColumn>& columns, std::size_t required) const {
+  const toml::node* node = level_->Find(key);
+  if (node == nullptr) return std::nullopt;
+  std::vector<std::string> names;
+  for (const TomlColumn& column : columns) names.push_back(column.name);
+  const std::string wanted = fmt::format("a list of {}", fmt::join(names, ", "));
+  if (!node->is_array())
+    Fail(key, fmt::format("{} is {}; it must be a list, each item {}", FullName(key), KindOf(*node),
+                          wanted));
+  std::vector<std::vector<double>> rows;
+  for (const toml::node& item : *node->as_array()) {
+    const std::string name = fmt::format("{}[{}]", FullName(key), rows.size());
+    if (!item.is_array())
+      FailInRow(key, rows.size(),
+                fmt::format("{} is {}; it must be {}", name, KindOf(item), wanted));
+    const toml::array& numbers = *item.as_array();
+    if (numbers.size() < required || numbers.size() > columns.size())
+      FailInRow(key, rows.size(),
+                fmt::format("{} has {} numbers; it must have {} to {}: {}", name, numbers.size(),
+                            required, columns.size(), fmt::join(names, ", ")));
+    std::vector<double> row;
+    for (const toml::node& number : numbers) {
+      const TomlColumn& column = columns[row.size()];
+      const NumberOrFault found =
+          NumberIn(number, fmt::format("{} of {}", column.name, name), column.low, column.high);
+      if (!found.fault.empty()) FailInRow(key, rows.size(), found.fault);
+      row.push_back(found.number);
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
 std::optional<std::string> TomlTable::Text(const std::string& key) const {

@@ -257,7 +257,11 @@ void AddLaterParameters(const Medium& medium, Fnv1a& fnv) {
           [&](const auto& one) {
             using Type = std::decay_t<decltype(one)>;
             if constexpr (std::is_same_v<Type, bool>) fnv.Add(std::uint64_t{one});
-            if constexpr (!std::is_same_v<Type, bool>) fnv.Add(one);
+            if constexpr (std::is_same_v<Type, TomlRows>) {
+              for (const std::vector<double>& row : one) fnv.Add(row);
+            } else if constexpr (!std::is_same_v<Type, bool>) {
+              fnv.Add(one);
+            }
           },
           *value);
     }

@@ -80,6 +80,12 @@ SpectrumOf<double> LampLight::DepthTo(std::uint32_t number, const glm::dvec3& po
   return depth;
 }
 
+bool LampLight::Shades(const glm::dvec3& place, const LitPoint& at) const {
+  Lamp lamp;
+  lamp.position_m = place;
+  return state_->stage.Shades(lamp, at.smooth_point, at.geometric_normal);
+}
+
 Spectrum LampLight::LayerTransmittance(const glm::dvec3& direction, double length_m) const {
   return state_->stage.LayerTransmittance(state_->eye.at, direction, length_m);
 }

@@ -135,6 +135,9 @@ class LampLight {
   /// the lamp.
   [[nodiscard]] SpectrumOf<double> DepthTo(std::uint32_t number, const glm::dvec3& point) const;
 
+  /// Returns whether terrain or the planet shades a surface from a place.
+  [[nodiscard]] bool Shades(const glm::dvec3& place, const LitPoint& at) const;
+
   /// Returns unit directions from the eye to the scene's lamps.
   [[nodiscard]] std::vector<glm::dvec3> Directions() const;
 

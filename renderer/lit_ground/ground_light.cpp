@@ -210,6 +210,15 @@ Spectrum GroundLight::OfLamps(const SeenGround& seen, const LampNodes& near) con
                             near, {at.point, at.smooth_point, at.normal, at.geometric_normal}));
 }
 
+Spectrum GroundLight::OfGlow(const SeenGround& seen, const MediaLight& media) const {
+  const Hit& at = seen.hit;
+  const auto sees = [&](const glm::dvec3& place) {
+    return !parts_.lamps.Shades(place, {at.point, at.smooth_point, at.normal, at.geometric_normal});
+  };
+  return static_cast<float>(1.0 / kPi) *
+         (seen.albedo * media.GlowOnSurface(at.point, at.normal, sees));
+}
+
 PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSources& from,
                                       const ViewAxes& axes,
                                       std::array<double, 2> disk_sample) const {

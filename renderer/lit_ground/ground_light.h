@@ -79,6 +79,9 @@ class GroundLight {
   /// that can light the point.
   [[nodiscard]] Spectrum OfLamps(const SeenGround& seen, const LampNodes& near) const;
 
+  /// Returns the radiance towards the eye that media that glow cause, W m^-2 sr^-1 nm^-1.
+  [[nodiscard]] Spectrum OfGlow(const SeenGround& seen, const MediaLight& media) const;
+
   /// Returns Q and U of the light of sun and sky that water mirrors, in the axes of the picture.
   /// The incident light is taken as unpolarised, although light of the sky is polarised. A degree
   /// of polarisation p of the incident light changes the result for a wave near Brewster's angle by

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 
 #include "atmosphere/math/constants.h"
 
@@ -55,9 +56,12 @@ BodyGlow GlowOf(const LocalBody& body) {
     const double density = body.DensityAt(point);
     if (density == 0.0) continue;
     const std::array<double, kWaysOut> columns_m = ColumnsToOutside(body, point);
+    const std::optional<BodyColour> colour = body.ColourAt(point);
+    const SpectrumOf<double>& emission_per_m =
+        colour ? colour->emission_per_m : optics.emission_per_m;
     for (std::size_t band = 0; band < bands; ++band) {
       const double absorption_per_m = optics.extinction_per_m[band] - optics.scattering_per_m[band];
-      glow.intensity[band] += static_cast<float>(part_m3 * density * optics.emission_per_m[band] *
+      glow.intensity[band] += static_cast<float>(part_m3 * density * emission_per_m[band] *
                                                  MeanLeft(columns_m, absorption_per_m));
     }
   }

@@ -18,6 +18,8 @@
 
 namespace alpenglow::renderer {
 
+class GlowField;
+
 /// This switch turns the light that media emit themselves on or off.
 enum class MediaEmission { kOn, kOff };
 
@@ -114,6 +116,8 @@ class LitMedium {
   /// Returns the transmittance of a layer for skylight from above to an altitude. It includes the
   /// light in the forward peak.
   [[nodiscard]] virtual float SkyLeft(double /*altitude_m*/) const { return 1.0F; }
+  /// Returns the light that a body that glows sends to surfaces; null: none.
+  [[nodiscard]] virtual const GlowField* Glow() const { return nullptr; }
   /// Attenuates the light of the sky on a surface by a layer, and adds the light of the layer.
   /// @param cos_up  between the surface's normal and the vertical.
   virtual void ChangeSky(double /*altitude_m*/, double /*cos_up*/, SkyThroughMedia& /*sky*/) const {

@@ -83,10 +83,7 @@ Spectrum InFloats(const SpectrumOf<double>& values) {
 LitVolume::LitVolume(const LocalBody& volume, const MediaSources& sources)
     : volume_(volume),
       sources_(sources),
-      scattering_per_m_(InFloats(volume.optics().scattering_per_m)),
-      emission_per_m_(sources.emission == MediaEmission::kOn
-                          ? InFloats(volume.optics().emission_per_m)
-                          : Spectrum(sources.bands())),
+      mean_colour_(MeanColour()),
       chi_(LegendreCoefficients(volume.optics().phase,
                                 sources.air.multiple_scattering().options().degree)),
       sky_(Sky()),
@@ -95,7 +92,53 @@ LitVolume::LitVolume(const LocalBody& volume, const MediaSources& sources)
       lamps_(AllLamps()),
       orders_(Orders()),
       sky_left_(orders_ ? std::vector<VolumeGrid>{} : SkyLeft(sky_)),
-      extinction_per_m_(orders_ ? orders_->extinction_per_m() : volume.optics().extinction_per_m) {}
+      extinction_per_m_(orders_ ? orders_->extinction_per_m() : volume.optics().extinction_per_m),
+      glow_(GlowAround()) {}
+
+LitVolume::Colour LitVolume::MeanColour() const {
+  Colour colour{InFloats(volume_.optics().scattering_per_m), Spectrum(sources_.bands()),
+                Spectrum(sources_.bands(), 1.0F)};
+  if (sources_.emission == MediaEmission::kOn)
+    colour.emission_per_m = InFloats(volume_.optics().emission_per_m);
+  return colour;
+}
+
+std::optional<LitVolume::Colour> LitVolume::ColourAt(const glm::dvec3& point) const {
+  const std::optional<BodyColour> here = volume_.ColourAt(point);
+  if (!here) return std::nullopt;
+  Colour colour{InFloats(here->scattering_per_m), Spectrum(sources_.bands()),
+                Spectrum(sources_.bands())};
+  if (sources_.emission == MediaEmission::kOn)
+    colour.emission_per_m = InFloats(here->emission_per_m);
+  for (std::size_t band = 0; band < sources_.bands(); ++band) {
+    const float mean = mean_colour_.scattering_per_m[band];
+    if (mean > 0.0F) colour.relative[band] = colour.scattering_per_m[band] / mean;
+  }
+  return colour;
+}
+
+std::unique_ptr<const GlowField> LitVolume::GlowAround() const {
+  if (mean_colour_.emission_per_m == Spectrum(sources_.bands())) return nullptr;
+  return std::make_unique<const GlowField>(volume_, [this](const glm::dvec3& travel) {
+    std::shared_ptr<const VolumeOrders::Look> look;
+    if (orders_) look = std::make_shared<const VolumeOrders::Look>(orders_->LookAlong(-travel));
+    return [this, look](const glm::dvec3& point) {
+      const std::optional<Colour> here = ColourAt(point);
+      const Colour& colour = here ? *here : mean_colour_;
+      GlowField::Source source{colour.emission_per_m, extinction_per_m_};
+      if (look) {
+        const Spectrum scattered = orders_->OwnAt(point, *look);
+        for (std::size_t band = 0; band < scattered.size(); ++band)
+          source.light_per_m[band] +=
+              static_cast<float>(extinction_per_m_[band]) * colour.relative[band] * scattered[band];
+      } else {
+        for (std::size_t band = 0; band < source.light_per_m.size(); ++band)
+          source.extinction_per_m[band] -= static_cast<double>(colour.scattering_per_m[band]);
+      }
+      return source;
+    };
+  });
+}
 
 std::unique_ptr<const VolumeOrders> LitVolume::Orders() const {
   if (volume_.orders() == ScatteringOrders::kSingle) return nullptr;
@@ -345,7 +388,7 @@ void LitVolume::AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
   }
 }
 
-void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& direction,
+void LitVolume::AddLamp(const VolumeLamp& seen, const Colour& colour, const glm::dvec3& direction,
                         const LightOnPoint& light, double density, Spectrum& sum) const {
   const glm::dvec3 way = seen.lamp.position_m - light.point;
   const double distance = std::max({glm::length(way), seen.lamp.radius_m, 1e-3});
@@ -359,9 +402,9 @@ void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& direction,
   for (std::size_t band = 0; band < sum.size(); ++band) {
     const double depth = own_m * extinction_per_m_[band] + seen.depth[band].At(unit);
     const double scattered =
-        orders_ ? extinction_per_m_[band] *
+        orders_ ? static_cast<double>(colour.relative[band]) * extinction_per_m_[band] *
                       orders_->FirstOfLamp(cos_scattering, band, own_m + light.column_to_eye_m)
-                : volume_.optics().scattering_per_m[band] * phase;
+                : static_cast<double>(colour.scattering_per_m[band]) * phase;
     sum[band] += seen.intensity[band] * static_cast<float>(per_area * scattered * std::exp(-depth));
   }
 }
@@ -378,14 +421,18 @@ class LitVolume::OnOneRay final : public MediumOnRay {
   }
 
   void AddSource(const LightOnPoint& light, double density, Spectrum& sum) const override {
-    look_ ? AddAllOrders(light, density, sum) : AddFirstOrder(light, density, sum);
+    const std::optional<Colour> here = lit_.ColourAt(light.point);
+    const Colour& colour = here ? *here : lit_.mean_colour_;
+    look_ ? AddAllOrders(colour, light, density, sum) : AddFirstOrder(colour, light, density, sum);
     for (std::size_t band = 0; band < sum.size(); ++band)
-      sum[band] += static_cast<float>(density) * lit_.emission_per_m_[band];
-    for (const VolumeLamp& lamp : lit_.lamps_) lit_.AddLamp(lamp, direction_, light, density, sum);
+      sum[band] += static_cast<float>(density) * colour.emission_per_m[band];
+    for (const VolumeLamp& lamp : lit_.lamps_)
+      lit_.AddLamp(lamp, colour, direction_, light, density, sum);
   }
 
  private:
-  void AddFirstOrder(const LightOnPoint& light, double density, Spectrum& sum) const {
+  void AddFirstOrder(const Colour& colour, const LightOnPoint& light, double density,
+                     Spectrum& sum) const {
     SpectrumOf<double> depth = light.depth;
     lit_.AddDepthToLight(light.point, lit_.sources_.light.direction.seen, depth);
     const Spectrum sun = light.LitThrough(depth) * light.in_air;
@@ -399,11 +446,12 @@ class LitVolume::OnOneRay final : public MediumOnRay {
           phase_ * sun[band] +
           light.sky_left * sky[band] * static_cast<float>(lit_.sky_left_[band].At(unit));
       sum[band] +=
-          static_cast<float>(density) * lit_.scattering_per_m_[band] * irradiance[band] * arriving;
+          static_cast<float>(density) * colour.scattering_per_m[band] * irradiance[band] * arriving;
     }
   }
 
-  void AddAllOrders(const LightOnPoint& light, double density, Spectrum& sum) const {
+  void AddAllOrders(const Colour& colour, const LightOnPoint& light, double density,
+                    Spectrum& sum) const {
     const VolumeOrders& orders = *lit_.orders_;
     const double column_m = lit_.ColumnToLight(light.point, lit_.sources_.light.direction.seen);
     const Spectrum sun = light.LitThrough(light.depth) * light.in_air;
@@ -412,6 +460,7 @@ class LitVolume::OnOneRay final : public MediumOnRay {
     const Spectrum& irradiance = lit_.sources_.light.irradiance;
     for (std::size_t band = 0; band < sum.size(); ++band) {
       sum[band] += static_cast<float>(density * orders.extinction_per_m()[band]) *
+                   colour.relative[band] *
                    (irradiance[band] *
                         (sun[band] * scattered.sun[band] + light.sky_left * scattered.sky[band]) +
                     scattered.own[band]);

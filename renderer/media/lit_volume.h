@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "renderer/illumination/sky_moments.h"
+#include "renderer/media/glow_field.h"
 #include "renderer/media/lit_medium.h"
 #include "renderer/media/local_body.h"
 #include "renderer/media/volume_orders.h"
@@ -47,6 +48,7 @@ class LitVolume final : public LitMedium {
   /// sun_column_.
   void AddDepthToLight(const glm::dvec3& point, const glm::dvec3& to_disk,
                        SpectrumOf<double>& depth) const override;
+  [[nodiscard]] const GlowField* Glow() const override { return glow_.get(); }
 
  private:
   class OnOneRay;
@@ -60,6 +62,17 @@ class LitVolume final : public LitMedium {
   /// Returns the optical depth of the path from a point to a lamp without the volume.
   using LampDepth = std::function<SpectrumOf<double>(const glm::dvec3& point)>;
 
+  /// Scattering and emission at a point.
+  struct Colour {
+    Spectrum scattering_per_m, emission_per_m;  // at density 1
+    Spectrum relative;                          // scattering relative to the mean of the volume
+  };
+  [[nodiscard]] Colour MeanColour() const;
+  /// Returns the colour at a point of a volume whose colour varies.
+  [[nodiscard]] std::optional<Colour> ColourAt(const glm::dvec3& point) const;
+  /// Returns the light that leaves the volume from its emission: with light of all orders also what the
+  /// volume scatters of it, else the emission that is not absorbed. Null: it does not glow.
+  [[nodiscard]] std::unique_ptr<const GlowField> GlowAround() const;
   [[nodiscard]] SkyMoments Sky() const;
   [[nodiscard]] std::optional<VolumeGrid> SunColumns() const;
   [[nodiscard]] std::vector<VolumeGrid> SkyLeft(const SkyMoments& sky) const;
@@ -86,12 +99,12 @@ class LitVolume final : public LitMedium {
   /// bodies, per unit solar irradiance [1/sr].
   [[nodiscard]] Spectrum SkyPastBodies(const glm::dvec3& from) const;
   /// Adds the light of a lamp that the volume scatters along a direction once.
-  void AddLamp(const VolumeLamp& seen, const glm::dvec3& direction, const LightOnPoint& light,
-               double density, Spectrum& sum) const;
+  void AddLamp(const VolumeLamp& seen, const Colour& colour, const glm::dvec3& direction,
+               const LightOnPoint& light, double density, Spectrum& sum) const;
 
   const LocalBody& volume_;
   const MediaSources& sources_;
-  Spectrum scattering_per_m_, emission_per_m_;
+  Colour mean_colour_;
   std::vector<double> chi_;
   SkyMoments sky_;
   LightPastClouds past_;                  // at the middle
@@ -100,6 +113,7 @@ class LitVolume final : public LitMedium {
   std::unique_ptr<const VolumeOrders> orders_;  // null: the first order alone
   std::vector<VolumeGrid> sky_left_;            // [band]; empty with orders_
   SpectrumOf<double> extinction_per_m_;         // for wide sources
+  std::unique_ptr<const GlowField> glow_;       // null: none
 };
 
 }  // namespace alpenglow::renderer

@@ -22,6 +22,12 @@ struct LineSpan {
   double begin_m, end_m;
 };
 
+/// Scattering and emission at a point of a body, at density 1, band by band.
+struct BodyColour {
+  SpectrumOf<double> scattering_per_m;
+  SpectrumOf<double> emission_per_m;  // W m^-2 sr^-1 nm^-1 per metre
+};
+
 /// Immutable; safe to use from many threads. Directions are unit vectors.
 class LocalBody : public LocalMedium {
  public:
@@ -36,6 +42,12 @@ class LocalBody : public LocalMedium {
   /// Returns the number of samples across, ahead and up that resolve the density. The body's light
   /// is then computed with tables of columns. No value if Column() is in closed form and fast.
   [[nodiscard]] virtual std::optional<std::array<int, 3>> Samples() const { return std::nullopt; }
+
+  /// Returns scattering and emission at a point of a body whose colour varies; optics() are then the
+  /// mean of the body. No value if it has the same optics() everywhere.
+  [[nodiscard]] virtual std::optional<BodyColour> ColourAt(const glm::dvec3& /*point*/) const {
+    return std::nullopt;
+  }
 
   /// Returns the point as fractions of size_m: the box becomes the unit cube.
   [[nodiscard]] glm::dvec3 UnitFromFrame(const glm::dvec3& point) const;

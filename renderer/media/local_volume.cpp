@@ -11,6 +11,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/lamp.h"
+#include "renderer/media/classified_volume.h"
 #include "renderer/scene/volume_file.h"
 
 namespace alpenglow::renderer {
@@ -40,16 +41,35 @@ VolumePlacement PlacementOf(const Volume& volume, const SceneGround& ground) {
 
 std::shared_ptr<const VolumeGrid> GridOf(const Volume& volume) {
   if (volume.grid.empty()) return nullptr;
+  const GridValues allowed = volume.transfer.empty() ? GridValues::kDensities : GridValues::kAny;
   return std::make_shared<const VolumeGrid>(
-      volume.grid_size ? ReadRawGrid(volume.grid, *volume.grid_size) : ReadNrrd(volume.grid));
+      volume.grid_size ? ReadRawGrid(volume.grid, *volume.grid_size, allowed)
+                       : ReadNrrd(volume.grid, allowed));
 }
 
-/// Returns whether a volume neither attenuates nor emits. Cutting rays at it would only add
-/// rounding errors.
+/// Returns whether a volume neither attenuates nor emits.
 bool IsVoid(const Volume& volume) {
   const auto is_zero = [](double value) { return value == 0.0; };
   return std::all_of(volume.extinction_per_m.begin(), volume.extinction_per_m.end(), is_zero) &&
          std::all_of(volume.emission_per_m.begin(), volume.emission_per_m.end(), is_zero);
+}
+
+/// Returns a volume; null if it neither attenuates nor emits. Cutting rays at it would only add
+/// rounding errors.
+std::shared_ptr<const LocalMedium> MadeOf(const Volume& volume, const SceneGround& ground,
+                                          const std::vector<double>& wavelengths_nm) {
+  const VolumePlacement placement = PlacementOf(volume, ground);
+  auto grid = GridOf(volume);
+  if (volume.transfer.empty()) {
+    if (IsVoid(volume)) return nullptr;
+    return std::make_shared<const LocalVolume>(placement, volume.scale_height_m, std::move(grid),
+                                               OpticsOf(volume, wavelengths_nm), volume.orders);
+  }
+  auto made = std::make_shared<const ClassifiedVolume>(
+      placement, std::move(grid),
+      std::make_shared<const TransferFunction>(volume.transfer, wavelengths_nm), volume.phase,
+      volume.orders);
+  return made->IsVoid() ? nullptr : made;
 }
 
 }  // namespace
@@ -110,12 +130,9 @@ double LocalVolume::Column(const glm::dvec3& origin, const glm::dvec3& direction
 MediaList VolumesOf(const Scene& scene, const SceneGround& ground, const Medium& medium) {
   MediaList volumes;
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-    const Volume& volume = scene.volumes[i];
     try {
-      auto made = std::make_shared<const LocalVolume>(
-          PlacementOf(volume, ground), volume.scale_height_m, GridOf(volume),
-          OpticsOf(volume, medium.wavelengths_nm), volume.orders);
-      if (!IsVoid(volume)) volumes.push_back(std::move(made));
+      auto made = MadeOf(scene.volumes[i], ground, medium.wavelengths_nm);
+      if (made) volumes.push_back(std::move(made));
     } catch (const InputError& error) {
       throw InputError(fmt::format("volume {}: {}", i + 1, error.what()));
     }

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "renderer/media/glow_field.h"
+
 namespace alpenglow::renderer {
 namespace {
 
@@ -152,6 +154,18 @@ class Sources {
   std::vector<std::unique_ptr<const MediumOnRay>> on_ray_;
 };
 
+/// Returns the optical depth of the air between two points.
+Spectrum DepthOfAir(const MediaSources& sources, const glm::dvec3& from, const glm::dvec3& to) {
+  const double length_m = glm::length(to - from);
+  ViewRay ray;
+  ray.altitude_m = sources.geometry.AltitudeOf(from);
+  ray.mu = std::clamp(glm::dot(to - from, sources.geometry.UpAt(from)) / std::max(length_m, 1e-9),
+                      -1.0, 1.0);
+  ray.length_m = length_m;
+  ray.passes_ground = true;
+  return sources.air.single_scattering().OpticalDepthAlong(ray);
+}
+
 }  // namespace
 
 struct MediaLight::State {
@@ -197,6 +211,33 @@ Spectrum MediaLight::BeamLeft(const glm::dvec3& point, const glm::dvec3& to_disk
   for (std::size_t band = 0; band < left.size(); ++band)
     left[band] = static_cast<float>(std::exp(-depth[band]));
   return left;
+}
+
+Spectrum MediaLight::GlowOnSurface(const glm::dvec3& point, const glm::dvec3& normal,
+                                   const std::function<bool(const glm::dvec3& place)>& sees) const {
+  const Spectrum none(state_->media.bands());
+  Spectrum sum = none;
+  for (std::size_t m = 0; m < state_->lit.size(); ++m) {
+    const GlowField* const field = state_->lit[m]->Glow();
+    if (field == nullptr) continue;
+    const Spectrum clear = field->On(point, normal, sees);
+    if (clear == none) continue;
+    const glm::dvec3 way = field->middle() - point;
+    const double length_m = std::max(glm::length(way), 1e-9);
+    const Spectrum air = DepthOfAir(state_->sources, point, field->middle());
+    std::vector<double> columns_m(state_->lit.size(), 0.0);
+    for (std::size_t other = 0; other < columns_m.size(); ++other) {
+      if (other != m)
+        columns_m[other] = state_->media.all()[other]->Column(point, way / length_m, length_m);
+    }
+    for (std::size_t band = 0; band < sum.size(); ++band) {
+      double depth = static_cast<double>(air[band]);
+      for (std::size_t other = 0; other < columns_m.size(); ++other)
+        depth += columns_m[other] * state_->extinction_per_m[other][band];
+      sum[band] += clear[band] * static_cast<float>(std::exp(-depth));
+    }
+  }
+  return sum;
 }
 
 SkyThroughMedia MediaLight::SkyOnSurface(double altitude_m, double cos_up,

@@ -8,6 +8,7 @@
 // into the air.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 
@@ -49,6 +50,12 @@ class MediaLight {
   ///     above all media.
   [[nodiscard]] SkyThroughMedia SkyOnSurface(double altitude_m, double cos_up,
                                              SkyThroughMedia above) const;
+
+  /// Returns the irradiance that bodies that glow cause on a surface, through air and the other media
+  /// [W m^-2 nm^-1]. @param normal, sees  see GlowField::On.
+  [[nodiscard]] Spectrum GlowOnSurface(
+      const glm::dvec3& point, const glm::dvec3& normal,
+      const std::function<bool(const glm::dvec3& place)>& sees) const;
 
  private:
   struct State;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <utility>
 
 #include "atmosphere/base/error.h"
@@ -117,16 +118,26 @@ CloudHarmonics VolumeOrders::LampsIn(const CloudBox& cell, std::size_t band,
   return sum;
 }
 
+double VolumeOrders::EmissionIn(const CloudBox& cell, std::size_t band) const {
+  double sum = 0.0, densities = 0.0;
+  CellsOf(band).EachSample(cell, [&](const glm::dvec3& point, double density) {
+    const std::optional<BodyColour> colour = volume_.ColourAt(point);
+    densities += density;
+    sum += density * (colour ? colour->emission_per_m : volume_.optics().emission_per_m)[band];
+  });
+  return sum / std::max(densities, 1e-30);
+}
+
 std::vector<CloudHarmonics> VolumeOrders::OwnIn(const CloudCells& cells, std::size_t band,
                                                 const VolumeIllumination& light) const {
   std::vector<CloudHarmonics> own(cells.full());
-  const double emission_per_m = light.emits ? volume_.optics().emission_per_m[band] : 0.0;
-  const double emitted =
-      emission_per_m / (extinction_per_m_[band] * optics_[band]->scaled_albedo() * kY00);
-  tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t cell) {
-    const glm::dvec3 middle = cells.Middle(cell), half_m = 0.5 * cells.cell_m();
-    if (light.lamps) own[cell] = LampsIn({middle - half_m, middle + half_m}, band, light);
-    own[cell][0] += static_cast<float>(emitted);
+  const double per_emission =
+      1.0 / (extinction_per_m_[band] * optics_[band]->scaled_albedo() * kY00);
+  tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t number) {
+    const glm::dvec3 middle = cells.Middle(number), half_m = 0.5 * cells.cell_m();
+    const CloudBox cell{middle - half_m, middle + half_m};
+    if (light.lamps) own[number] = LampsIn(cell, band, light);
+    if (light.emits) own[number][0] += static_cast<float>(per_emission * EmissionIn(cell, band));
   });
   return own;
 }
@@ -208,6 +219,18 @@ VolumeOrders::Scattered VolumeOrders::At(const Place& place, const Look& look) c
     light.sun[band] = std::max(static_cast<float>(first) + source(sun_[band]), 0.0F);
     light.sky[band] = source(sky_[band]);
     light.own[band] = source(own_[band]);
+  }
+  return light;
+}
+
+Spectrum VolumeOrders::OwnAt(const glm::dvec3& point, const Look& look) const {
+  Spectrum light(optics_.size());
+  std::vector<CloudCells::Mixture> around;  // of each of cells_
+  for (const auto& cells : cells_) around.push_back(cells->Around(point));
+  for (std::size_t band = 0; band < light.size(); ++band) {
+    if (!own_[band]) continue;
+    light[band] =
+        std::max(own_[band]->Source(around[cells_of_band_[band]], look.factors[band]), 0.0F);
   }
   return light;
 }

@@ -108,6 +108,8 @@ class VolumeOrders {
                    // [W m^-2 sr^-1 nm^-1]
   };
   [[nodiscard]] Scattered At(const Place& place, const Look& look) const;
+  /// Returns Scattered::own alone.
+  [[nodiscard]] Spectrum OwnAt(const glm::dvec3& point, const Look& look) const;
 
   /// Returns w' p_eff at a band, the factor on the light of a lamp in the source of the first order
   /// [1/sr].
@@ -127,6 +129,8 @@ class VolumeOrders {
                                                   const VolumeIllumination& light) const;
   [[nodiscard]] CloudHarmonics LampsIn(const CloudBox& cell, std::size_t band,
                                        const VolumeIllumination& light) const;
+  /// Returns the mean emission in a cell at density 1 [W m^-2 sr^-1 nm^-1 / m].
+  [[nodiscard]] double EmissionIn(const CloudBox& cell, std::size_t band) const;
   [[nodiscard]] const VolumeCells& CellsOf(std::size_t band) const {
     return *cells_[cells_of_band_[band]];
   }

@@ -243,6 +243,11 @@ void PixelShader::AddGround(const Hit& hit, const CameraRay& ray, const LampTile
   }
   const Spectrum lamp_light = shaded.transmittance * ground_light.OfLamps(seen, near.surface);
   shaded.lamps = shaded.lamps + lamp_light;
+  if (const MediaLight* media = frame_->media()) {
+    const Spectrum glow = shaded.transmittance * ground_light.OfGlow(seen, *media);
+    shaded.volumes = shaded.volumes + glow;
+    shaded.radiance = shaded.radiance + glow;
+  }
   shaded.radiance = shaded.radiance + lamp_light + shaded.transmittance * natural;
 }
 

@@ -404,6 +404,26 @@ std::vector<double> ExtinctionOf(const TomlSection& table) {
   return *table.Numbers("extinction_per_m");
 }
 
+/// Checks the transfer function of a volume and what else the table says.
+void CheckTransfer(const TomlSection& table, const Volume& volume) {
+  RefuseKeys(table,
+             {"extinction_per_m", "visibility_m", "albedo", "emission_per_m", "temperature_k"},
+             "is for a volume without transfer, whose rows have it");
+  const std::string name = table.FullName("transfer");
+  if (!table.Has("grid")) table.Fail("transfer", name + " needs a grid");
+  const std::vector<TransferNode>& nodes = volume.transfer;
+  if (nodes.size() < 2)
+    table.Fail("transfer",
+               fmt::format("{} has {} rows; it must have two or more", name, nodes.size()));
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    if (nodes[i].value > nodes[i - 1].value) continue;
+    table.FailInRow("transfer", i,
+                    fmt::format("{}[{}] has the value {} after {}; values must "
+                                "increase",
+                                name, i, nodes[i].value, nodes[i - 1].value));
+  }
+}
+
 Volume VolumeOf(const TomlTable& entry, const fs::path& folder, std::size_t bands) {
   const TomlSection table(entry, VolumeFields().Keys());
   for (const char* key : {"latitude", "longitude"}) Require(table, key);
@@ -414,6 +434,11 @@ Volume VolumeOf(const TomlTable& entry, const fs::path& folder, std::size_t band
   VolumeFields().Read(table, volume);
   volume.height = HeightOf(table, Height{0.0, true});
   ReadDensity(table, folder, volume);
+  volume.phase = DropletPhaseOf(table);
+  if (table.Has("transfer")) {
+    CheckTransfer(table, volume);
+    return volume;
+  }
   volume.extinction_per_m = ExtinctionOf(table);
   if (volume.temperature_k && table.Has("emission_per_m")) {
     table.Fail("temperature_k",
@@ -427,7 +452,6 @@ Volume VolumeOf(const TomlTable& entry, const fs::path& folder, std::size_t band
                fmt::format("{} has no effect: what absorbs nothing does not glow; set {} below 1",
                            table.FullName("temperature_k"), table.FullName("albedo")));
   }
-  volume.phase = DropletPhaseOf(table);
   return volume;
 }
 

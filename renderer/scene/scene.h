@@ -146,6 +146,16 @@ struct MediumLayer {
   PhaseFunction phase;
 };
 
+/// A node of a transfer function, see TransferFunction.
+struct TransferNode {
+  double value = 0.0;  // of the grid
+  double extinction_per_m = 0.0;
+  std::array<double, 3> albedo{1.0, 1.0, 1.0};  // of single scattering, linear sRGB
+  double temperature_k = 0.0;                   // of black-body emission; 0: none
+
+  bool operator==(const TransferNode&) const = default;
+};
+
 /// A local participating medium, see LocalVolume: smoke, a bank of droplets, a glowing gas. Lists
 /// hold one value, or one per wavelength of the medium.
 struct Volume {
@@ -157,7 +167,10 @@ struct Volume {
   std::optional<double> scale_height_m;         // empty: homogeneous, or a grid
   std::filesystem::path grid;                   // see ReadNrrd and ReadRawGrid; empty: none
   std::optional<std::array<int, 3>> grid_size;  // of a raw grid
-  std::vector<double> extinction_per_m{0.0};    // at density 1
+  /// With nodes the grid has values of any quantity, see ClassifiedVolume, and extinction, albedo and
+  /// emission are those of the nodes. Values increase.
+  std::vector<TransferNode> transfer;
+  std::vector<double> extinction_per_m{0.0};  // at density 1
   std::vector<double> albedo{1.0};
   std::vector<double> emission_per_m{0.0};  // W m^-2 sr^-1 nm^-1 per metre at density 1
   std::optional<double> temperature_k;  // of black-body emission by Kirchhoff's law; empty: none

@@ -60,6 +60,36 @@ TomlMember<Object> Three(std::array<double, 3> Object::*member, std::pair<double
   return three;
 }
 
+/// The nodes of a transfer function as rows.
+TomlMember<Volume> Transfer() {
+  constexpr std::size_t kRequired = 5;
+  TomlMember<Volume> transfer{{.kind = TomlType::Kind::kRows,
+                               .columns = {{"value", -1e12, 1e12},
+                                           {"extinction_per_m", 0.0, 1e4},
+                                           {"red", 0.0, 1.0},
+                                           {"green", 0.0, 1.0},
+                                           {"blue", 0.0, 1.0},
+                                           {"temperature_k", 0.0, 50000.0}},
+                               .required_columns = kRequired}};
+  transfer.set = [](const TomlValue& value, Volume& volume) {
+    volume.transfer.clear();
+    for (const std::vector<double>& row : std::get<TomlRows>(value))
+      volume.transfer.push_back({row[0],
+                                 row[1],
+                                 {row[2], row[3], row[4]},
+                                 row.size() > kRequired ? row[kRequired] : 0.0});
+  };
+  transfer.get = [](const Volume& volume) -> std::optional<TomlValue> {
+    if (volume.transfer.empty()) return std::nullopt;
+    TomlRows rows;
+    for (const TransferNode& node : volume.transfer)
+      rows.push_back({node.value, node.extinction_per_m, node.albedo[0], node.albedo[1],
+                      node.albedo[2], node.temperature_k});
+    return TomlValue(rows);
+  };
+  return transfer;
+}
+
 /// A whole number as the seed of clouds.
 TomlMember<SceneCloud> CloudSeed() {
   TomlMember<SceneCloud> seed =
@@ -332,6 +362,8 @@ const TomlFields<Volume>& VolumeFields() {
         "# \"smoke.nrrd\""},
        {"grid_size", Numbers<Volume>({2.0, kMostGridSamples}), "", "required for a raw grid",
         "samples along x, y and z", "# [64, 64, 32]"},
+       {"transfer", Transfer(), "", "", "instead of the next five keys (Transfer functions)",
+        "# [[0.2, 0.0, 1, 1, 1], [0.6, 0.05, 0.9, 0.4, 0.1]]"},
        {"extinction_per_m", ReadApart(OneForAll(Numbers(&Volume::extinction_per_m, {0.0, 1e4}))),
         "1/m", "", "one value, or one per wavelength", "0.01"},
        {"visibility_m", Number<Volume>({0.1, 1e6}), "m", "", "instead of extinction_per_m",

@@ -331,7 +331,7 @@ float FloatAt(const char* bytes, bool is_big_endian) {
   return std::bit_cast<float>(bits);
 }
 
-VolumeGrid FromBytes(const NrrdHeader& header, std::string_view data) {
+VolumeGrid FromBytes(const NrrdHeader& header, std::string_view data, GridValues allowed) {
   const std::array<int, 3>& size = header.size;
   const bool is_float = header.type == NrrdHeader::Type::kFloat;
   const std::size_t bytes = StoredBytesOf(header);
@@ -344,7 +344,7 @@ VolumeGrid FromBytes(const NrrdHeader& header, std::string_view data) {
     values[i] = is_float ? FloatAt(data.data() + 4 * i, header.is_big_endian)
                          : static_cast<float>(static_cast<unsigned char>(data[i])) / 255.0F;
   }
-  return {size, std::move(values)};
+  return {size, std::move(values), allowed};
 }
 
 /// A zlib stream with automatic cleanup.
@@ -419,7 +419,7 @@ std::string DataOf(const NrrdHeader& header) {
 }
 
 // Returns the values in the axis order of space: right fastest, up slowest.
-VolumeGrid InSpace(const NrrdHeader& header, const VolumeGrid& grid) {
+VolumeGrid InSpace(const NrrdHeader& header, const VolumeGrid& grid, GridValues allowed) {
   if (header.space_axis == std::array<std::size_t, 3>{0, 1, 2} &&
       header.is_reversed == std::array<bool, 3>{})
     return grid;
@@ -441,7 +441,7 @@ VolumeGrid InSpace(const NrrdHeader& header, const VolumeGrid& grid) {
       }
     }
   }
-  return {size, std::move(values)};
+  return {size, std::move(values), allowed};
 }
 
 // Runs a reading step and adds the file name to its errors.
@@ -463,22 +463,22 @@ NrrdHeader ReadNrrdHeader(const fs::path& file) {
   return HeaderReader(file, text).Header();
 }
 
-VolumeGrid ReadNrrd(const fs::path& file) {
+VolumeGrid ReadNrrd(const fs::path& file, GridValues allowed) {
   const NrrdHeader header = ReadNrrdHeader(file);
   return NamingItsFile(header.data_file, [&] {
     CheckGridSize(header.size);
-    return InSpace(header, FromBytes(header, DataOf(header)));
+    return InSpace(header, FromBytes(header, DataOf(header), allowed), allowed);
   });
 }
 
-VolumeGrid ReadRawGrid(const fs::path& file, const std::array<int, 3>& size) {
+VolumeGrid ReadRawGrid(const fs::path& file, const std::array<int, 3>& size, GridValues allowed) {
   NrrdHeader header;
   header.size = size;
   std::error_code error;
   if (fs::file_size(file, error) != StoredBytesOf(header)) RefuseKnownFormats(file, kVolumesWanted);
   return NamingItsFile(file, [&] {
     CheckGridSize(size);
-    return FromBytes(header, BytesAfter(file, 0));
+    return FromBytes(header, BytesAfter(file, 0), allowed);
   });
 }
 

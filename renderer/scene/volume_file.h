@@ -47,15 +47,17 @@ struct NrrdHeader {
 /// number per sample.
 [[nodiscard]] NrrdHeader ReadNrrdHeader(const std::filesystem::path& file);
 
-/// Reads an NRRD file: three axes, type float or uint8 (255 is density 1), encoding raw or gzip,
+/// Reads an NRRD file: three axes, type float or uint8 (255 is 1), encoding raw or gzip,
 /// data in the file or in another one that it names. Its space directions reorder the samples so
 /// that they run to the right, ahead and up. Throws InputError "file: ..." or "file:line: ..." for
 /// damaged data, and errors of ReadNrrdHeader.
-[[nodiscard]] VolumeGrid ReadNrrd(const std::filesystem::path& file);
+[[nodiscard]] VolumeGrid ReadNrrd(const std::filesystem::path& file,
+                                  GridValues allowed = GridValues::kDensities);
 
 /// Reads a file that consists only of nx * ny * nz floats, little endian, x fastest. Throws
 /// InputError "file: ..." when it has another length, which names the format that the bytes show.
 [[nodiscard]] VolumeGrid ReadRawGrid(const std::filesystem::path& file,
-                                     const std::array<int, 3>& size);
+                                     const std::array<int, 3>& size,
+                                     GridValues allowed = GridValues::kDensities);
 
 }  // namespace alpenglow::renderer

@@ -74,7 +74,8 @@ void CheckGridSize(const std::array<int, 3>& size) {
   }
 }
 
-VolumeGrid::VolumeGrid(const std::array<int, 3>& size, std::vector<float> values)
+VolumeGrid::VolumeGrid(const std::array<int, 3>& size, std::vector<float> values,
+                       GridValues allowed)
     : size_(size), values_(std::move(values)) {
   CheckGridSize(size);
   if (values_.size() != CountOf(size)) {
@@ -82,12 +83,12 @@ VolumeGrid::VolumeGrid(const std::array<int, 3>& size, std::vector<float> values
                                  size[0], size[1], size[2]));
   }
   for (std::size_t i = 0; i < values_.size(); ++i) {
-    if (!(values_[i] >= 0.0F && std::isfinite(values_[i]))) {
-      throw InputError(
-          fmt::format("value {} of the grid is {}; densities must be finite and not "
-                      "negative",
-                      i, values_[i]));
-    }
+    const bool is_allowed = values_[i] >= 0.0F || allowed == GridValues::kAny;
+    if (is_allowed && std::isfinite(values_[i])) continue;
+    throw InputError(fmt::format("value {} of the grid is {}; {}", i, values_[i],
+                                 allowed == GridValues::kAny
+                                     ? "values must be finite"
+                                     : "densities must be finite and not negative"));
   }
   FindLargest();
 }
@@ -99,16 +100,18 @@ void VolumeGrid::FindLargest() {
   for (int bz = 0; bz < blocks_[2]; ++bz) {
     for (int by = 0; by < blocks_[1]; ++by) {
       for (int bx = 0; bx < blocks_[0]; ++bx) {
-        float most = 0.0F;
+        float least = std::numeric_limits<float>::max(), most = -least;
         for (int z = kVolumeBlock * bz; z <= std::min(kVolumeBlock * (bz + 1), size_[2] - 1); ++z) {
           for (int y = kVolumeBlock * by; y <= std::min(kVolumeBlock * (by + 1), size_[1] - 1);
                ++y) {
             for (int x = kVolumeBlock * bx; x <= std::min(kVolumeBlock * (bx + 1), size_[0] - 1);
                  ++x) {
+              least = std::min(least, values_[Index(x, y, z)]);
               most = std::max(most, values_[Index(x, y, z)]);
             }
           }
         }
+        least_in_block_.push_back(least);
         largest_in_block_.push_back(most);
         largest_ = std::max(largest_, static_cast<double>(most));
       }
@@ -135,14 +138,14 @@ double VolumeGrid::At(const glm::dvec3& point) const {
   return (1.0 - share[2]) * along_xy(0) + share[2] * along_xy(1);
 }
 
-std::vector<DensePiece> VolumeGrid::PiecesAlong(const glm::dvec3& origin,
-                                                const glm::dvec3& direction, double begin_m,
-                                                double end_m) const {
+std::vector<ValuePiece> VolumeGrid::BlocksAlong(const glm::dvec3& origin,
+                                                const glm::dvec3& direction, double begin,
+                                                double end) const {
   const glm::dvec3 scale = glm::dvec3(size_[0], size_[1], size_[2]) / double{kVolumeBlock};
   const glm::dvec3 from = origin * scale - 0.5 / kVolumeBlock;
   const glm::dvec3 slope = direction * scale;
-  std::vector<DensePiece> pieces;
-  WalkPlanes(from, slope, begin_m, end_m, [&](double a, double b) {
+  std::vector<ValuePiece> pieces;
+  WalkPlanes(from, slope, begin, end, [&](double a, double b) {
     const glm::dvec3 middle = from + 0.5 * (a + b) * slope;
     std::size_t index = 0;
     for (int axis = 2; axis >= 0; --axis) {
@@ -150,8 +153,41 @@ std::vector<DensePiece> VolumeGrid::PiecesAlong(const glm::dvec3& origin,
       const int block = std::clamp(static_cast<int>(std::floor(middle[axis])), 0, blocks - 1);
       index = index * static_cast<std::size_t>(blocks) + static_cast<std::size_t>(block);
     }
-    const auto largest = static_cast<double>(largest_in_block_[index]);
-    if (largest > 0.0) pieces.push_back({a, b, largest});
+    pieces.push_back({a, b, static_cast<double>(least_in_block_[index]),
+                      static_cast<double>(largest_in_block_[index])});
+  });
+  return pieces;
+}
+
+std::vector<DensePiece> VolumeGrid::PiecesAlong(const glm::dvec3& origin,
+                                                const glm::dvec3& direction, double begin_m,
+                                                double end_m) const {
+  std::vector<DensePiece> pieces;
+  for (const ValuePiece& block : BlocksAlong(origin, direction, begin_m, end_m)) {
+    if (block.largest > 0.0) pieces.push_back({block.begin, block.end, block.largest});
+  }
+  return pieces;
+}
+
+double CubicPiece::At(double s) const {
+  const double t = 1.0 - s;
+  return t * t * (t * coefficients[0] + 3.0 * s * coefficients[1]) +
+         s * s * (3.0 * t * coefficients[2] + s * coefficients[3]);
+}
+
+std::vector<CubicPiece> VolumeGrid::CubicsAlong(const glm::dvec3& origin,
+                                                const glm::dvec3& direction, double begin,
+                                                double end) const {
+  const glm::dvec3 scale(size_[0], size_[1], size_[2]);
+  std::vector<CubicPiece> pieces;
+  WalkPlanes(origin * scale - 0.5, direction * scale, begin, end, [&](double a, double b) {
+    std::array<double, 4> v{};
+    for (std::size_t i = 0; i < v.size(); ++i)
+      v[i] = At(origin + (a + static_cast<double>(i) / 3.0 * (b - a)) * direction);
+    pieces.push_back({a,
+                      b,
+                      {v[0], (-5.0 * v[0] + 18.0 * v[1] - 9.0 * v[2] + 2.0 * v[3]) / 6.0,
+                       (2.0 * v[0] - 9.0 * v[1] + 18.0 * v[2] - 5.0 * v[3]) / 6.0, v[3]}});
   });
   return pieces;
 }

@@ -52,11 +52,19 @@ std::string HeightText(const Height& height) {
 std::string ValueText(const TomlValue& value) {
   if (const auto* const list = std::get_if<std::vector<double>>(&value))
     return fmt::format("{}", fmt::join(*list, " "));
+  if (const auto* const rows = std::get_if<TomlRows>(&value)) {
+    std::string text;
+    for (const std::vector<double>& row : *rows)
+      text += fmt::format("{}{}", text.empty() ? "" : ", ", fmt::join(row, " "));
+    return text;
+  }
   return std::visit(
       [](const auto& one) -> std::string {
         using Type = std::decay_t<decltype(one)>;
-        if constexpr (std::is_same_v<Type, std::vector<double>>) return "";
-        if constexpr (!std::is_same_v<Type, std::vector<double>>) return fmt::format("{}", one);
+        constexpr bool kIsList =
+            std::is_same_v<Type, std::vector<double>> || std::is_same_v<Type, TomlRows>;
+        if constexpr (kIsList) return "";
+        if constexpr (!kIsList) return fmt::format("{}", one);
       },
       value);
 }

@@ -51,6 +51,29 @@ TEST(TomlTable, InvalidNumbersAreRefused) {
             "s.toml:2: camera.c[1] is nan; it must lie in [0, 2]");
 }
 
+TEST(TomlTable, ReadsRowsWithOptionalColumns) {
+  const std::vector<TomlColumn> columns{{"a", 0.0, 1.0}, {"b", -5.0, 5.0}};
+  const TomlTable camera = Camera("r = [[0.5, -2], [1]]\nempty = []");
+  EXPECT_EQ(camera.Rows("r", columns, 1), (std::vector<std::vector<double>>{{0.5, -2.0}, {1.0}}));
+  EXPECT_EQ(camera.Rows("empty", columns, 1), std::vector<std::vector<double>>{});
+  EXPECT_EQ(camera.Rows("absent", columns, 1), std::nullopt);
+}
+
+TEST(TomlTable, RowsAreRefusedWithTheirOwnLine) {
+  const std::vector<TomlColumn> columns{{"a", 0.0, 1.0}, {"b", -5.0, 5.0}};
+  const auto fault = [&](const char* line) {
+    return FaultOf([&] { (void)Camera(line).Rows("r", columns, 1); });
+  };
+  EXPECT_EQ(fault("r = [[0],\n[1, 9]]"), "s.toml:3: b of camera.r[1] is 9; it must lie in [-5, 5]");
+  EXPECT_EQ(fault("r = [[0],\n\n[1, nan]]"),
+            "s.toml:4: b of camera.r[1] is nan; it must lie in [-5, 5]");
+  EXPECT_EQ(fault("r = [\n[]]"), "s.toml:3: camera.r[0] has 0 numbers; it must have 1 to 2: a, b");
+  EXPECT_EQ(fault("r = [[1],\n2]"), "s.toml:3: camera.r[1] is 2; it must be a list of a, b");
+  EXPECT_EQ(fault("r = 2"), "s.toml:2: camera.r is 2; it must be a list, each item a list of a, b");
+  EXPECT_EQ(FaultOf([] { Camera("r = [[1],\n[2]]").FailInRow("r", 1, "a fault"); }),
+            "s.toml:3: a fault");
+}
+
 TEST(TomlTable, WrongTypesAreRefused) {
   const auto fault = [](const char* line, const auto& read) {
     return FaultOf([&] { return read(Camera(line)); });

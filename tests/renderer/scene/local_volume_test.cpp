@@ -133,6 +133,50 @@ TEST(VolumeGrid, PiecesContainAllDensityAndBoundIt) {
   }
 }
 
+TEST(VolumeGrid, CubicsAreTheValuesAlongALine) {
+  std::vector<float> values = NoiseGrid({9, 7, 12}).values();
+  for (float& value : values) value -= 0.4F;
+  const VolumeGrid grid({9, 7, 12}, std::move(values), GridValues::kAny);
+  for (const glm::dvec3& direction : Directions()) {
+    const glm::dvec3 origin = glm::dvec3(0.5) - 0.3 * direction;
+    double end = 0.0;
+    for (const CubicPiece& piece : grid.CubicsAlong(origin, direction, 0.0, 0.6)) {
+      EXPECT_EQ(piece.begin, end) << "without gaps";
+      end = piece.end;
+      const auto [least, largest] =
+          std::minmax_element(piece.coefficients.begin(), piece.coefficients.end());
+      for (const double s : {0.0, 0.11, 0.5, 0.83, 1.0}) {
+        const double value = grid.At(origin + (piece.begin + s * (end - piece.begin)) * direction);
+        EXPECT_NEAR(piece.At(s), value, 1e-12);
+        EXPECT_TRUE(value > *least - 1e-12 && value < *largest + 1e-12);
+      }
+    }
+    EXPECT_EQ(end, 0.6);
+    for (const ValuePiece& block : grid.BlocksAlong(origin, direction, 0.0, 0.6)) {
+      for (const double s : {0.1, 0.5, 0.9}) {
+        const double value =
+            grid.At(origin + (block.begin + s * (block.end - block.begin)) * direction);
+        EXPECT_TRUE(value > block.least - 1e-12 && value < block.largest + 1e-12);
+      }
+    }
+  }
+}
+
+TEST(VolumeGrid, OnlyGridsOfAnyQuantityHaveNegativeValues) {
+  const std::vector<float> negative(8, -300.0F);
+  EXPECT_THAT(FaultOf([&] {
+                (void)VolumeGrid({2, 2, 2}, negative);
+              }),
+              HasSubstr("value 0 of the grid is -300; densities must be finite and not negative"));
+  EXPECT_EQ(VolumeGrid({2, 2, 2}, negative, GridValues::kAny).At(glm::dvec3(0.5)), -300.0);
+  std::vector<float> broken(8, 1.0F);
+  broken[3] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THAT(FaultOf([&] {
+                (void)VolumeGrid({2, 2, 2}, broken, GridValues::kAny);
+              }),
+              HasSubstr("value 3 of the grid is nan; values must be finite"));
+}
+
 TEST(LocalVolume, ChordsOfASphereAreThoseOfGeometry) {
   VolumePlacement placement;
   placement.shape = Shape::kEllipsoid;

@@ -449,6 +449,47 @@ TEST(Scene, SpheresAreRefusedByKey) {
   });
 }
 
+const std::string kScan = kVolume + "size_m = [9, 9, 9]\ngrid = \"a.nrrd\"\n";
+
+TEST(Scene, TransferFunctionsAreRead) {
+  const Scene scene = Read(kScan +
+                           "transfer = [\n  [-1000, 0, 1, 1, 1],  # air\n"
+                           "  [40.5, 0.25, 0.9, 0.5, 0.1, 1200],\n]\n");
+  const std::vector<TransferNode>& nodes = scene.volumes.at(0).transfer;
+  ASSERT_EQ(nodes.size(), 2U);
+  EXPECT_EQ(nodes[0], (TransferNode{-1000.0, 0.0, {1.0, 1.0, 1.0}, 0.0}));
+  EXPECT_EQ(nodes[1], (TransferNode{40.5, 0.25, {0.9, 0.5, 0.1}, 1200.0}));
+}
+
+TEST(Scene, TransferFunctionsAreRefusedByRow) {
+  const std::string two = "transfer = [[0, 0, 1, 1, 1], [1, 1, 1, 1, 1]]\n";
+  EXPECT_EQ(FaultOf(kScan + two), "no fault");
+  ExpectFaults({
+      {kVolume + "size_m = [9, 9, 9]\n" + two, "s.toml:9: volume[0].transfer needs a grid"},
+      {kScan + "transfer = []\n", "s.toml:10: volume[0].transfer has 0 rows; it must have two"},
+      {kScan + "transfer = [[0, 1, 1, 1, 1]]\n", "volume[0].transfer has 1 rows"},
+      {kScan + "transfer = [[0, 1, 1, 1, 1],\n[0, 1, 1, 1, 1]]\n",
+       "s.toml:11: volume[0].transfer[1] has the value 0 after 0; values must increase"},
+      {kScan + "transfer = [[0, 1, 1, 1, 1],\n[1, 1, 1, 1, 1],\n[0.5, 1, 1, 1, 1]]\n",
+       "s.toml:12: volume[0].transfer[2] has the value 0.5 after 1"},
+      {kScan + "transfer = [[0, 1, 1, 1, 1],\n[1, -1, 1, 1, 1]]\n",
+       "s.toml:11: extinction_per_m of volume[0].transfer[1] is -1; it must lie in [0, 10000]"},
+      {kScan + "transfer = [[0, 1, 1, 1],\n[1, 1, 1, 1]]\n", "transfer[0] has 4 numbers"},
+      {kScan + "transfer = [0, 1, 1, 1, 1]\n", "volume[0].transfer[0] is 0; it must be a list"},
+      {kScan + "transfer = [[0, 1, 1, 1, [1]], [1, 1, 1, 1, 1]]\n",
+       "blue of volume[0].transfer[0] is a list"},
+      {kScan + "[[volume.transfer]]\nvalue = 1\n", "volume[0].transfer[0] is a table"},
+      {kScan + two + "extinction_per_m = 1\n",
+       "volume[0].extinction_per_m is for a volume without"},
+      {kScan + two + "visibility_m = 1\n",
+       "volume[0].visibility_m is for a volume without transfer"},
+      {kScan + two + "albedo = 1\n", "volume[0].albedo is for a volume without transfer"},
+      {kScan + two + "emission_per_m = 1\n", "volume[0].emission_per_m is for a volume without"},
+      {kScan + two + "temperature_k = 1000\n", "volume[0].temperature_k is for a volume without"},
+      {kScan + two + "scale_height_m = 4\n", "is for a volume without a grid"},
+  });
+}
+
 // Hard case 42.
 TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
   EXPECT_EQ(FaultOf(kLamp + "intensity_cd = 0\n"), "no fault");

@@ -660,6 +660,10 @@ constexpr char kVolume[] =
     "[[volume]]\nlatitude = 46.5\nlongitude = 8\nsize_m = [4, 4, 4]\nvisibility_m = 9\n";
 constexpr char kBareVolume[] = "[[volume]]\nlatitude = 46.5\nlongitude = 8\nsize_m = [4, 4, 4]\n";
 
+constexpr char kBareGrid[] =
+    "[[volume]]\nlatitude = 46.5\nlongitude = 8\nsize_m = [4, 4, 4]\ngrid_size = [2, 2, 3]\n"
+    "grid = 'one'\n";
+
 const std::vector<ChangedKey>& ChangedVolumes() {
   static const std::vector<ChangedKey> kKeys{
       {"", "", kVolume},
@@ -683,6 +687,10 @@ const std::vector<ChangedKey>& ChangedVolumes() {
       {kVolume, "", "orders = 'single'"},
       {kVolume, "grid_size = [2, 2, 3]\ngrid = 'one'", "grid_size = [2, 3, 2]\ngrid = 'one'"},
       {kVolume, "grid_size = [2, 2, 3]\ngrid = 'one'", "grid_size = [2, 2, 3]\ngrid = 'two'"},
+      {kBareGrid, "transfer = [[0, 1, 1, 1, 1], [1, 0, 1, 1, 1]]",
+       "transfer = [[0, 1, 1, 1, 1], [1, 0, 1, 0.9, 1]]"},
+      {kBareGrid, "transfer = [[0, 1, 1, 1, 1], [1, 0, 1, 1, 1]]",
+       "transfer = [[0, 1, 1, 1, 1, 900], [1, 0, 1, 1, 1]]"},
       {kBareVolume, "visibility_m = 9", "visibility_m = 10"},
       {kBareVolume, "extinction_per_m = 1", "extinction_per_m = [1, 1, 1, 1.1]"}};
   return kKeys;
