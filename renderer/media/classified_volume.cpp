@@ -13,31 +13,35 @@ double LargestIn(const VolumeGrid& grid, const TransferFunction& transfer) {
   return transfer.LargestExtinction(static_cast<double>(*least), static_cast<double>(*largest));
 }
 
-/// Returns the mean optics of a grid, weighted by extinction, from at most 64 points along each side.
+/// Returns the mean optics of a grid from at most 64 points along each side: the albedo weighted by
+/// scattering, since it is that of scattered light, and the emission by extinction.
 MediumOptics MeanOptics(const VolumeGrid& grid, const TransferFunction& transfer,
-                        const PhaseFunction& phase) {
+                        const PhaseFunction& phase, std::size_t bands) {
   constexpr int kMostPoints = 64;
-  const double largest_per_m = LargestIn(grid, transfer);
   std::array<int, 3> count = grid.size();
   for (int& side : count) side = std::min(side, kMostPoints);
-  TransferFunction::Colour mean = transfer.ColourOf(0.0);
-  mean.albedo = mean.emission = SpectrumOf<double>(mean.albedo.size());
-  double sum = 0.0;
+  double extinction = 0.0;
+  SpectrumOf<double> scattering(bands), twice(bands), emission(bands);
   for (int i = 0; i < count[0] * count[1] * count[2]; ++i) {
     const glm::dvec3 cell(i % count[0], i / count[0] % count[1], i / (count[0] * count[1]));
     const double value = grid.At((cell + 0.5) / glm::dvec3(count[0], count[1], count[2]));
-    const double extinction_per_m = transfer.Extinction(value);
-    if (extinction_per_m == 0.0) continue;
+    const double here = transfer.Extinction(value);
+    if (here == 0.0) continue;
     const TransferFunction::Colour colour = transfer.ColourOf(value);
-    mean.albedo = mean.albedo + extinction_per_m * colour.albedo;
-    mean.emission = mean.emission + extinction_per_m * colour.emission;
-    sum += extinction_per_m;
+    extinction += here;
+    scattering = scattering + here * colour.albedo;
+    twice = twice + here * (colour.albedo * colour.albedo);
+    emission = emission + here * colour.emission;
   }
-  const double scale = sum > 0.0 ? largest_per_m / sum : 0.0;
-  MediumOptics optics{SpectrumOf<double>(mean.albedo.size()), scale * mean.albedo,
-                      scale * mean.emission, phase};
-  std::ranges::fill(optics.extinction_per_m.values(), largest_per_m);
-  return optics;
+  const double largest_per_m = LargestIn(grid, transfer);
+  MediumOptics mean{SpectrumOf<double>(bands, largest_per_m), SpectrumOf<double>(bands),
+                    SpectrumOf<double>(bands), phase};
+  for (std::size_t band = 0; band < bands; ++band) {
+    if (scattering[band] > 0.0)
+      mean.scattering_per_m[band] = largest_per_m * std::min(twice[band] / scattering[band], 1.0);
+    if (extinction > 0.0) mean.emission_per_m[band] = largest_per_m * emission[band] / extinction;
+  }
+  return mean;
 }
 
 /// Stretches of a line along which a transfer function is linear in the value.
@@ -105,7 +109,7 @@ ClassifiedVolume::ClassifiedVolume(const VolumePlacement& placement,
                                    std::shared_ptr<const VolumeGrid> grid,
                                    std::shared_ptr<const TransferFunction> transfer,
                                    const PhaseFunction& phase, ScatteringOrders orders)
-    : LocalBody(placement, MeanOptics(*grid, *transfer, phase), orders),
+    : LocalBody(placement, MeanOptics(*grid, *transfer, phase, transfer->bands()), orders),
       grid_(std::move(grid)),
       transfer_(std::move(transfer)),
       largest_per_m_(LargestIn(*grid_, *transfer_)) {}

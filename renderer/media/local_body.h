@@ -43,7 +43,7 @@ class LocalBody : public LocalMedium {
   /// is then computed with tables of columns. No value if Column() is in closed form and fast.
   [[nodiscard]] virtual std::optional<std::array<int, 3>> Samples() const { return std::nullopt; }
 
-  /// Returns scattering and emission at a point of a body whose colour varies; optics() are then the
+  /// Returns scattering and emission at a point of a body whose colour varies; optics() are then a
   /// mean of the body. No value if it has the same optics() everywhere.
   [[nodiscard]] virtual std::optional<BodyColour> ColourAt(const glm::dvec3& /*point*/) const {
     return std::nullopt;

@@ -27,6 +27,7 @@ class TransferFunction {
   TransferFunction(const std::vector<TransferNode>& nodes,
                    const std::vector<double>& wavelengths_nm);
 
+  [[nodiscard]] std::size_t bands() const { return wavelengths_nm_.size(); }
   /// Returns the extinction of a value [1/m].
   [[nodiscard]] double Extinction(double value) const;
   /// Returns the largest extinction of the values in [least, largest] [1/m].

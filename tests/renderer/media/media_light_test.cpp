@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
@@ -103,6 +105,14 @@ std::shared_ptr<const LocalVolume> Box(const glm::dvec3& bottom, const glm::dvec
 
 const glm::dvec3 kMediaEye(0.0, 0.0, 50.0);
 
+/// Returns a direction, evenly from the whole sphere.
+glm::dvec3 EvenDirection(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform;
+  const double z = 2.0 * uniform(random) - 1.0, phi = 2.0 * kPi * uniform(random);
+  const double level = std::sqrt(1.0 - z * z);
+  return {level * std::cos(phi), level * std::sin(phi), z};
+}
+
 TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
   const MediaStage& stage = TheStage();
   const MediumOptics optics = Optics(1e-6, 0.9);
@@ -129,6 +139,79 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
     EXPECT_NEAR(static_cast<double>(light.radiance[band]) / expected, 1.0, 1e-3)
         << "the air is a straight line over 100 m of altitude, the volume's own depth 4e-5";
   }
+}
+
+/// Traces the irradiance of a surface by the emission of a body, with all orders of scattering.
+double TracedGlow(const LocalVolume& body, std::size_t band, const glm::dvec3& point,
+                  const glm::dvec3& normal, int paths) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform;
+  const MediumOptics& optics = body.optics();
+  const double per_m = optics.extinction_per_m[band];
+  const double albedo = optics.scattering_per_m[band] / per_m;
+  double sum = 0.0;
+  for (int path = 0; path < paths; ++path) {
+    // The directions of the first rays have the density of the cosine.
+    glm::dvec3 way = glm::normalize(normal + EvenDirection(random)), at = point;
+    double weight = kPi / paths;
+    for (int order = 0; order < 300; ++order) {
+      const auto span = body.SpanAlong(at, way, std::numeric_limits<double>::infinity());
+      if (!span) break;
+      const double distance_m = span->begin_m - std::log1p(-uniform(random)) / per_m;
+      if (distance_m >= span->end_m) break;
+      at += distance_m * way;
+      sum += weight * optics.emission_per_m[band] / per_m;
+      weight *= albedo;
+      // The phase function is even.
+      way = EvenDirection(random);
+    }
+  }
+  return sum;
+}
+
+TEST(MediaLight, BodiesThatGlowLightSurfacesWithAllOrders) {
+  const MediaStage& stage = TheStage();
+  MediumOptics optics = Optics(0.1, 0.8, 2.0);
+  optics.phase = tests::LobeOf(0.0);
+  const auto fire = Box({0.0, 300.0, 0.0}, {20.0, 20.0, 20.0}, optics);
+  const MediaLight lit = stage.Lit({fire});
+  const auto all = [](const glm::dvec3&) { return true; };
+  const glm::dvec3 up(0.0, 0.0, 1.0);
+  for (const glm::dvec3& point : {glm::dvec3(0.0, 275.0, 0.0), glm::dvec3(25.0, 320.0, 2.0)}) {
+    const Spectrum found = lit.GlowOnSurface(point, up, all);
+    for (std::size_t band = 0; band < 3; ++band) {
+      const double exact = TracedGlow(*fire, band, point, up, tests::ScaledDown(200000, 40000));
+      EXPECT_NEAR(static_cast<double>(found[band]) / exact, 1.0, tests::ScaledDown(0.06, 0.1))
+          << "light of all orders is solved within a few percent; the paths have 1 % of noise";
+    }
+  }
+}
+
+TEST(MediaLight, TheGlowOfBodiesWithoutHigherOrdersIsNotScatteredAway) {
+  const MediaStage& stage = TheStage();
+  const auto all = [](const glm::dvec3&) { return true; };
+  const auto glow = [&](double extinction, double albedo) {
+    return stage
+        .Lit({Box({0.0, 300.0, 0.0}, {20.0, 20.0, 20.0}, Optics(extinction, albedo, 2.0), nullptr,
+                  ScatteringOrders::kSingle)})
+        .GlowOnSurface({0.0, 275.0, 0.0}, {0.0, 0.0, 1.0}, all)[1];
+  };
+  EXPECT_FLOAT_EQ(glow(0.1, 1.0), glow(1e-9, 0.0)) << "white smoke takes nothing away";
+  EXPECT_LT(glow(0.1, 0.0), 0.7F * glow(0.1, 1.0));
+}
+
+TEST(MediaLight, OtherMediaDimTheGlowOnSurfaces) {
+  const MediaStage& stage = TheStage();
+  const auto all = [](const glm::dvec3&) { return true; };
+  const glm::dvec3 point(0.0, 200.0, 10.0), facing(0.0, 1.0, 0.0);
+  const auto fire = Box({0.0, 300.0, 0.0}, {20.0, 20.0, 20.0}, Optics(0.1, 0.0, 2.0));
+  const auto smoke = Box({0.0, 250.0, 0.0}, {50.0, 10.0, 50.0}, Optics(0.1, 0.0));
+  const Spectrum clear = stage.Lit({fire}).GlowOnSurface(point, facing, all);
+  const Spectrum dimmed = stage.Lit({smoke, fire}).GlowOnSurface(point, facing, all);
+  for (std::size_t band = 0; band < 3; ++band)
+    EXPECT_NEAR(static_cast<double>(dimmed[band] / clear[band]),
+                std::exp(-10.0 * smoke->optics().extinction_per_m[band]), 1e-4);
+  EXPECT_EQ(stage.Lit({smoke}).GlowOnSurface(point, facing, all)[0], 0.0F);
 }
 
 TEST(SkyMoments, IsotropicScatteringIsTheSameInAllDirections) {

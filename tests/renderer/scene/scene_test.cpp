@@ -465,15 +465,15 @@ TEST(Scene, TransferFunctionsAreRefusedByRow) {
   const std::string two = "transfer = [[0, 0, 1, 1, 1], [1, 1, 1, 1, 1]]\n";
   EXPECT_EQ(FaultOf(kScan + two), "no fault");
   ExpectFaults({
-      {kVolume + "size_m = [9, 9, 9]\n" + two, "s.toml:9: volume[0].transfer needs a grid"},
-      {kScan + "transfer = []\n", "s.toml:10: volume[0].transfer has 0 rows; it must have two"},
+      {kVolume + "size_m = [9, 9, 9]\n" + two, "s.toml:8: volume[0].transfer needs a grid"},
+      {kScan + "transfer = []\n", "s.toml:9: volume[0].transfer has 0 rows; it must have two"},
       {kScan + "transfer = [[0, 1, 1, 1, 1]]\n", "volume[0].transfer has 1 rows"},
       {kScan + "transfer = [[0, 1, 1, 1, 1],\n[0, 1, 1, 1, 1]]\n",
-       "s.toml:11: volume[0].transfer[1] has the value 0 after 0; values must increase"},
+       "s.toml:10: volume[0].transfer[1] has the value 0 after 0; values must increase"},
       {kScan + "transfer = [[0, 1, 1, 1, 1],\n[1, 1, 1, 1, 1],\n[0.5, 1, 1, 1, 1]]\n",
-       "s.toml:12: volume[0].transfer[2] has the value 0.5 after 1"},
+       "s.toml:11: volume[0].transfer[2] has the value 0.5 after 1"},
       {kScan + "transfer = [[0, 1, 1, 1, 1],\n[1, -1, 1, 1, 1]]\n",
-       "s.toml:11: extinction_per_m of volume[0].transfer[1] is -1; it must lie in [0, 10000]"},
+       "s.toml:10: extinction_per_m of volume[0].transfer[1] is -1; it must lie in [0, 10000]"},
       {kScan + "transfer = [[0, 1, 1, 1],\n[1, 1, 1, 1]]\n", "transfer[0] has 4 numbers"},
       {kScan + "transfer = [0, 1, 1, 1, 1]\n", "volume[0].transfer[0] is 0; it must be a list"},
       {kScan + "transfer = [[0, 1, 1, 1, [1]], [1, 1, 1, 1, 1]]\n",
