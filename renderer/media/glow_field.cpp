@@ -19,6 +19,8 @@ constexpr int kMostParts = 8;         // along a side
 constexpr int kGlowRays = 18;         // along a side of the raster of a direction
 constexpr int kGlowSteps = 32;        // over the diagonal of the box
 constexpr double kLargestPart = 0.1;  // radius of a part, relative to its distance
+constexpr double kLowPart = 0.02;     // the same, for parts that reach below the surface
+constexpr double kBelow = 0.05;       // fraction of a part that may lie below it
 constexpr double kOpaqueDepth = 20.0;
 
 /// Returns the number of a part in a grid.
@@ -31,7 +33,7 @@ glm::dvec2 Folded(const glm::dvec2& at) {
   return {std::copysign(1.0 - std::abs(at.y), at.x), std::copysign(1.0 - std::abs(at.x), at.y)};
 }
 
-/// Returns the part of [0, kTurns]^2 that an axis of a direction maps to.
+/// Returns the place of a direction on the octahedral map, in [0, turns]^2. The third component is up.
 glm::dvec2 OctahedralPlace(const glm::dvec3& direction, int turns) {
   const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
   glm::dvec2 at(direction.x / sum, direction.y / sum);
@@ -232,7 +234,7 @@ void GlowField::AddLight(const Level& level, std::size_t part, const View& view,
   // The light of opaque balls comes from their middles, and that of opaque faces from the mean place
   // of the light in its direction, which follows from the place. Half way between them the error is
   // smallest.
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 2;
   const VolumePlacement& box = body_.placement();
   glm::dvec3 way = level.middle[part] - view.point;
   std::array<MapWeight, 3> nodes{};
@@ -260,18 +262,32 @@ void GlowField::AddLight(const Level& level, std::size_t part, const View& view,
   }
 }
 
+std::pair<double, double> GlowField::HeightsOf(const Level& level, const std::array<int, 3>& part,
+                                               const View& view) const {
+  const VolumePlacement& box = body_.placement();
+  const glm::dvec3 count(level.count[0], level.count[1], level.count[2]);
+  const glm::dvec3 middle =
+      body_.FrameFromUnit((glm::dvec3(part[0], part[1], part[2]) + 0.5) / count);
+  const glm::dvec3 along(glm::dot(view.normal, box.across), glm::dot(view.normal, box.ahead),
+                         glm::dot(view.normal, box.up));
+  const double half_m = 0.5 * glm::dot(glm::abs(along), box.size_m / count);
+  const double middle_m = glm::dot(middle - view.point, view.normal);
+  return {middle_m - half_m, middle_m + half_m};
+}
+
 void GlowField::AddPart(std::size_t level_number, const std::array<int, 3>& part, const View& view,
                         bool is_tested, Spectrum& sum) const {
   const Level& level = levels_[level_number];
   const std::size_t number = PartNumber(level.count, part);
   if (!level.shines[number]) return;
   const bool is_finest = level_number + 1 == levels_.size();
-  const glm::dvec3 way = level.middle[number] - view.point;
-  const double distance_m = std::max(glm::length(way), 1e-9);
-  const double over_m = glm::dot(way, view.normal);
-  if (over_m <= (is_finest ? 0.0 : -2.0 * level.radius_m)) return;
-  // A part that reaches below the surface is divided, too.
-  const bool is_small = level.radius_m < kLargestPart * distance_m && over_m > level.radius_m;
+  const double distance_m = glm::length(level.middle[number] - view.point);
+  const auto [low_m, high_m] = HeightsOf(level, part, view);
+  if (high_m <= 0.0) return;
+  // A part that reaches below the surface is divided, too, unless it is low over the horizon.
+  const bool is_whole =
+      low_m > -kBelow * (high_m - low_m) || level.radius_m < kLowPart * distance_m;
+  const bool is_small = level.radius_m < kLargestPart * distance_m && is_whole;
   constexpr std::size_t kTestedLevel = 1;
   if (!is_tested && (is_small || is_finest || level_number == kTestedLevel)) {
     if (!view.sees(level.middle[number])) return;

@@ -11,7 +11,7 @@
 // once. A point takes the light of parts that are small as it sees them.
 //
 // Against integrals over all directions, irradiance from a distance of half the body's size on is
-// within 3 %, of bodies of optical depth 10 within 4 %. Opaque slabs that are six times as wide as they
+// within 3 %, of bodies of optical depth 10 within 5 %. Opaque slabs that are six times as wide as they
 // are deep are up to 25 % too bright near their plane: tests/renderer/media/glow_field_test.cpp.
 #pragma once
 
@@ -20,6 +20,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
@@ -78,6 +79,10 @@ class GlowField {
   [[nodiscard]] std::size_t PartAt(const glm::dvec3& point) const;
   [[nodiscard]] Level Merged(const Level& fine) const;
   void FindMiddles(Level& level) const;
+  /// Returns the least and the largest height of a part over the plane of a surface [m].
+  [[nodiscard]] std::pair<double, double> HeightsOf(const Level& level,
+                                                    const std::array<int, 3>& part,
+                                                    const View& view) const;
   void AddPart(std::size_t level, const std::array<int, 3>& part, const View& view, bool is_tested,
                Spectrum& sum) const;
   void AddLight(const Level& level, std::size_t part, const View& view, Spectrum& sum) const;

@@ -104,8 +104,8 @@ TEST(GlowField, ThinBodiesHaveTheIrradianceOfTheIntegral) {
 }
 
 TEST(GlowField, DeepBodiesHaveTheIrradianceOfTheIntegral) {
-  ExpectIntegrated(Fire(VolumePlacement::Shape::kEllipsoid, {10.0, 20.0, 30.0}, 0.3), 0.04);
-  ExpectIntegrated(Fire(VolumePlacement::Shape::kBox, {20.0, 20.0, 20.0}, 0.5), 0.04);
+  ExpectIntegrated(Fire(VolumePlacement::Shape::kEllipsoid, {10.0, 20.0, 30.0}, 0.3), 0.05);
+  ExpectIntegrated(Fire(VolumePlacement::Shape::kBox, {20.0, 20.0, 20.0}, 0.5), 0.05);
 }
 
 TEST(GlowField, OpaqueSlabsAreTooBrightNearTheirPlane) {
