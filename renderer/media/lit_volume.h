@@ -13,7 +13,8 @@
 //
 // The eight lamps of the scene that are brightest at a volume light it, through the air around lamps
 // and bodies (optical depths are from a grid of at most 24 samples per side), shadowed by terrain.
-// Other bodies that glow are lamps, too (body_glow.h), without air and terrain in between.
+// Other bodies that glow are lamps, too (body_glow.h), without air and terrain in between. Surfaces have
+// the light of a body that glows by its parts (glow_field.h).
 //
 // With light of all orders a volume attenuates light without the forward peak of its phase function:
 // its own, that of wide sources behind it, and sunlight in its shadow.

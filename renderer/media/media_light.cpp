@@ -240,6 +240,14 @@ Spectrum MediaLight::GlowOnSurface(const glm::dvec3& point, const glm::dvec3& no
   return sum;
 }
 
+std::vector<glm::dvec3> MediaLight::PlacesThatGlow() const {
+  std::vector<glm::dvec3> places;
+  for (const auto& medium : state_->lit) {
+    if (const GlowField* const field = medium->Glow()) places.push_back(field->middle());
+  }
+  return places;
+}
+
 SkyThroughMedia MediaLight::SkyOnSurface(double altitude_m, double cos_up,
                                          SkyThroughMedia above) const {
   for (const auto& medium : state_->lit) medium->ChangeSky(altitude_m, cos_up, above);

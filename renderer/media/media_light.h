@@ -11,6 +11,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <vector>
 
 #include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/solved_air.h"
@@ -56,6 +57,8 @@ class MediaLight {
   [[nodiscard]] Spectrum GlowOnSurface(
       const glm::dvec3& point, const glm::dvec3& normal,
       const std::function<bool(const glm::dvec3& place)>& sees) const;
+  /// Returns the middles of the bodies that glow.
+  [[nodiscard]] std::vector<glm::dvec3> PlacesThatGlow() const;
 
  private:
   struct State;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <glm/geometric.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -369,6 +370,11 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
   };
   EffectPreview preview;
   std::vector<glm::dvec3> points = frame.lamps().Directions();
+  if (const MediaLight* media = frame.media()) {
+    for (const glm::dvec3& place : media->PlacesThatGlow())
+      if (place != frame.camera().eye())
+        points.push_back(glm::normalize(place - frame.camera().eye()));
+  }
   if (const auto& known = frame.sky_lights().stars) {
     const auto& stars = known->directions();
     points.insert(points.end(), stars.begin(), stars.end());

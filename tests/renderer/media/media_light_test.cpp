@@ -212,6 +212,9 @@ TEST(MediaLight, OtherMediaDimTheGlowOnSurfaces) {
     EXPECT_NEAR(static_cast<double>(dimmed[band] / clear[band]),
                 std::exp(-10.0 * smoke->optics().extinction_per_m[band]), 1e-4);
   EXPECT_EQ(stage.Lit({smoke}).GlowOnSurface(point, facing, all)[0], 0.0F);
+  const std::vector<glm::dvec3> places = stage.Lit({smoke, fire}).PlacesThatGlow();
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_LT(glm::length(places[0] - fire->Middle()), 0.5);
 }
 
 TEST(SkyMoments, IsotropicScatteringIsTheSameInAllDirections) {
