@@ -152,6 +152,20 @@ TEST(GlowField, PointsInsideHaveFiniteLight) {
   }
 }
 
+TEST(GlowField, ExtremeBodiesHaveFiniteLight) {
+  for (const glm::dvec3& size_m :
+       {glm::dvec3(0.01), glm::dvec3(2e5), glm::dvec3(2e5, 0.01, 30.0)}) {
+    for (const double absorption_per_m : {1e-30, 1e4}) {
+      const LocalVolume body = Fire(VolumePlacement::Shape::kBox, size_m, absorption_per_m * 1e8);
+      const GlowField field = FieldOf(body);
+      for (const double off_m : {0.0, 0.005, 1.0, 1e7}) {
+        const float light = field.On({off_m, off_m, 0.0}, {0.0, 0.0, 1.0}, SeesAll)[0];
+        EXPECT_TRUE(std::isfinite(light) && light >= 0.0F) << size_m.x << ", " << off_m;
+      }
+    }
+  }
+}
+
 TEST(GlowField, CountsFewTestsOfSight) {
   const LocalVolume ball = Fire(VolumePlacement::Shape::kEllipsoid, glm::dvec3(20.0), 0.1);
   const GlowField field = FieldOf(ball);
