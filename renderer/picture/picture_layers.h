@@ -35,7 +35,7 @@ enum class PictureLayer {
   kTransmittance,  // of air and media, 0 to 1, colour under the sun above the air
   kSunVisibility,  // 0 to 1
   kLamps,          // all light that comes from lamps [cd/m^2]
-  kVolumes,        // light scattered by media, and their emission [cd/m^2]
+  kVolumes,        // light scattered by media, and their emission, also on the ground [cd/m^2]
   kClouds,         // see Shaded: light of clouds [cd/m^2], their transmittance, their distance [m],
                    // which is infinite without clouds
   kScotopic,       // luminance for the rods of the eye [scotopic cd/m^2]

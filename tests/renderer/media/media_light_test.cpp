@@ -766,6 +766,27 @@ TEST(RenderMedia, GlowingVolumeIsDimmedByFogInFrontOfIt) {
   EXPECT_LT(left, std::exp(-0.005 * 369.0)) << "all of it at its near side";
 }
 
+TEST(RenderMedia, AFireLightsTheGroundBelowIt) {
+  Scene scene = WithVolume(0.01, 0.0);
+  scene.volumes[0].temperature_k = 2000.0;
+  scene.volumes[0].size_m = {2.0, 2.0, 2.0};
+  scene.medium = tests::WithoutAir(scene.medium);
+  scene.camera.pitch_rad = -std::atan2(50.0, 400.0);
+  scene.camera.fov_rad = 0.02;
+  RenderSettings settings = kSmallMedia;
+  const HdrImage image = Rendered(scene, kMediaNight, settings);
+  std::vector<double> radiance;
+  for (std::size_t band = 0; band < scene.medium.wavelengths_nm.size(); ++band) {
+    const double emission = 0.01 * BlackBodyRadiance(scene.medium.wavelengths_nm[band], 2000.0);
+    radiance.push_back(scene.medium.ground_albedo[band] / kPi * 8.0 * emission / (21.0 * 21.0));
+  }
+  const auto expected = BandColour(scene.medium.wavelengths_nm).LinearSrgb(radiance);
+  EXPECT_NEAR(static_cast<double>(image.at(12, 7)[0]) / expected[0], 1.0, 0.03)
+      << "the bound of the light of fires; the ray meets the ground within 3 m below the fire";
+  settings.effects = EffectSet::All().Without(Effect::kVolumes);
+  EXPECT_LT(Rendered(scene, kMediaNight, settings).at(12, 7)[0], 1e-3F * image.at(12, 7)[0]);
+}
+
 TEST(RenderMedia, FogAtNightHasOnlyTheLightOfLamps) {
   Scene scene = WithoutVolume();
   scene.layers = {FogIn(0.01, 30.0)};
