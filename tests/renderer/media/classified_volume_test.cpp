@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/media/classified_volume.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +22,12 @@
 #include "renderer/media/media_march.h"
 #include "renderer/media/volume_orders.h"
 #include "renderer/procedural_mountains/lattice_noise.h"
+#include "renderer/surface/scene_ground.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -375,6 +380,33 @@ TEST(ClassifiedVolume, ShellsHaveTheLightOfTracedPaths) {
   EXPECT_LT(ErrorOfShells(CoreAndShell(0.9, 0.9), 0.4), more * 0.06) << "of one albedo";
   EXPECT_LT(ErrorOfShells(CoreAndShell(0.3, 0.95), 0.4), more * 0.12);
   EXPECT_LT(ErrorOfShells(CoreAndShell(0.95, 0.3), 0.4), more * 0.2);
+}
+
+class ClassifiedFile : public TemporaryFolder {};
+
+TEST_F(ClassifiedFile, GridsOfScenesAreClassified) {
+  const std::array<float, 8> values{-3.0F, 5.0F, 1.0F, 2.0F, -3.0F, 5.0F, 1.0F, 2.0F};
+  WriteText(folder_ / "scan.raw",
+            {reinterpret_cast<const char*>(values.data()), sizeof(float) * values.size()});
+  Scene scene = QuickScene(50.0, 0.0, 0.0, 40.0);
+  Volume& volume = scene.volumes.emplace_back();
+  volume.place = scene.place;
+  volume.height = {0.0, false};
+  volume.size_m = {10.0, 10.0, 10.0};
+  volume.grid = folder_ / "scan.raw";
+  volume.grid_size = {2, 2, 2};
+  const SceneGround ground = LoadGround(scene);
+  EXPECT_THAT(tests::FaultOf([&] { return VolumesOf(scene, ground, scene.medium); }),
+              testing::HasSubstr("scan.raw: value 0 of the grid is -3; densities must be"));
+  volume.transfer = {{-3.0, 0.0}, {5.0, 0.4}};
+  const MediaList media = VolumesOf(scene, ground, scene.medium);
+  ASSERT_EQ(media.size(), 1U);
+  const auto& made = dynamic_cast<const ClassifiedVolume&>(*media.front());
+  EXPECT_EQ(made.optics().extinction_per_m[0], 0.4);
+  // The middle of the grid is the mean of its values, 1.25.
+  EXPECT_NEAR(0.4 * made.DensityAt(made.Middle()), 0.4 * 4.25 / 8.0, 1e-9);
+  volume.transfer = {{6.0, 0.0}, {7.0, 0.4}};
+  EXPECT_TRUE(VolumesOf(scene, ground, scene.medium).empty()) << "no value has extinction";
 }
 
 TEST(ClassifiedVolume, WithoutExtinctionIsVoid) {
