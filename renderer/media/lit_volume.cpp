@@ -121,7 +121,7 @@ std::unique_ptr<const GlowField> LitVolume::GlowAround() const {
   if (mean_colour_.emission_per_m == Spectrum(sources_.bands())) return nullptr;
   return std::make_unique<const GlowField>(volume_, [this](const glm::dvec3& travel) {
     std::shared_ptr<const VolumeOrders::Look> look;
-    if (orders_) look = std::make_shared<const VolumeOrders::Look>(orders_->LookAlong(-travel));
+    if (orders_) look = std::make_shared<const VolumeOrders::Look>(orders_->LookTowards(-travel));
     return [this, look](const glm::dvec3& point) {
       const std::optional<Colour> here = ColourAt(point);
       const Colour& colour = here ? *here : mean_colour_;

@@ -188,10 +188,15 @@ void VolumeOrders::Solve(std::size_t band, const VolumeIllumination& light) {
   }
 }
 
-VolumeOrders::Look VolumeOrders::LookAlong(const glm::dvec3& eye, const glm::dvec3& look) const {
+VolumeOrders::Look VolumeOrders::LookTowards(const glm::dvec3& look) const {
   Look along{look, optics_.front()->peak().AtAngle(glm::dot(look, to_sun_)), {}, {}};
   for (std::size_t band = 0; band < optics_.size(); ++band)
     along.factors.push_back(optics_[band]->SourceFactors(-CellsOf(band).DirectionInCells(look)));
+  return along;
+}
+
+VolumeOrders::Look VolumeOrders::LookAlong(const glm::dvec3& eye, const glm::dvec3& look) const {
+  Look along = LookTowards(look);
   for (std::size_t i = 0; i < cells_.size() && cells_.front()->is_limited(); ++i) {
     const auto band =
         static_cast<std::size_t>(std::ranges::find(cells_of_band_, i) - cells_of_band_.begin());

@@ -92,6 +92,8 @@ class VolumeOrders {
     std::vector<CloudHarmonics> factors;  // [band]
     std::vector<VolumeWay> ways;          // through each of the limited bodies
   };
+  /// Returns the values for OwnAt() alone. @param look  unit.
+  [[nodiscard]] Look LookTowards(const glm::dvec3& look) const;
   /// @param look  from the eye, unit.
   [[nodiscard]] Look LookAlong(const glm::dvec3& eye, const glm::dvec3& look) const;
 
@@ -108,7 +110,7 @@ class VolumeOrders {
                    // [W m^-2 sr^-1 nm^-1]
   };
   [[nodiscard]] Scattered At(const Place& place, const Look& look) const;
-  /// Returns Scattered::own alone.
+  /// Returns Scattered::own alone, as if the body were not limited (volume_cells.h).
   [[nodiscard]] Spectrum OwnAt(const glm::dvec3& point, const Look& look) const;
 
   /// Returns w' p_eff at a band, the factor on the light of a lamp in the source of the first order
