@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "atmosphere/base/error.h"
@@ -61,6 +62,19 @@ VolumeOrders::VolumeOrders(const LocalBody& volume, const VolumeIllumination& li
   }
   MakeCells(most_cells);
   SolveAll(light);
+}
+
+std::size_t VolumeOrders::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& cells : cells_)
+    for (const std::shared_ptr<const CloudCells>& grid : cells->grids()) sum += grid->bytes();
+  std::set<const CloudMoments*> counted{nullptr};  // bands of the same optics share their moments
+  for (const auto* parts : {&sun_, &sky_, &own_}) {
+    for (const std::shared_ptr<const CloudMoments>& moments : *parts) {
+      if (counted.insert(moments.get()).second) sum += moments->bytes();
+    }
+  }
+  return sum;
 }
 
 void VolumeOrders::MakeCells(double most_cells) {

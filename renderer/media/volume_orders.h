@@ -81,6 +81,9 @@ class VolumeOrders {
 
   static constexpr double kMostCells = 32768.0;
 
+  /// Returns the memory of cells and moments [bytes].
+  [[nodiscard]] std::size_t bytes() const;
+
   [[nodiscard]] const CloudOptics& OpticsOf(std::size_t band) const { return *optics_[band]; }
   /// Returns the scaled extinction at density 1 [1/m].
   [[nodiscard]] const SpectrumOf<double>& extinction_per_m() const { return extinction_per_m_; }

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -15,14 +13,14 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/math/numerics.h"
 #include "renderer/cloud_light/cloud_light.h"
 #include "renderer/cloud_light/cloud_path_tracer.h"
 #include "renderer/cloud_light/cloud_sun_map.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/report/cloud_views.h"
+#include "renderer/report/error_pictures.h"
 #include "renderer/report/reference_methods.h"
+#include "renderer/report/traced_light.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -33,8 +31,6 @@ constexpr double kCloudSunAzimuth_deg = 20.0, kCloudG = 0.85;
 constexpr std::size_t kReferenceBatches = 16;
 // The view of the pictures, from an aeroplane over the tops, and its sun.
 constexpr std::size_t kPictureView = 3, kPictureSun = 0;
-constexpr int kScreenPixels = 4;            // of the display, along a side of a pixel
-constexpr double kLargestShownError = 0.5;  // has the full colour
 
 /// Sizes of the topic.
 struct CloudStudySize {
@@ -78,45 +74,11 @@ ReadyCloudMethod ReadyMoments(const CloudUnderSun& under, const CloudLightOption
   return {[light](const CloudRay& ray) { return light.Radiance(ray); }, light.bytes()};
 }
 
-/// Returns the light of a ray by independent batches of paths, on this thread.
-/// @param paths_per_batch  at most kPathsPerBatch: the points of a lattice, evenly spread over it.
-CloudRadiance TracedLight(const CloudPathTracer& tracer, const CloudRay& ray, std::uint64_t seed,
-                          std::size_t batches, std::size_t paths_per_batch) {
-  std::array<std::array<double, 2>, 3> sums{};  // of sun, sky and ground: means and their squares
-  const std::size_t stride = atmosphere::reference::kPathsPerBatch / paths_per_batch;
-  for (std::size_t batch = 0; batch < batches; ++batch) {
-    CloudPathLight sum;
-    for (std::size_t path = 0; path < paths_per_batch; ++path) {
-      CloudPathTracer::PathRandom random(seed, batch, stride * path);
-      const CloudPathLight light = tracer.OnePath(ray, random);
-      sum.sun += light.sun;
-      sum.sky += light.sky;
-      sum.ground += light.ground;
-    }
-    const std::array<double, 3> values{sum.sun, sum.sky, sum.ground};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double mean = values[i] / static_cast<double>(paths_per_batch);
-      sums[i][0] += mean;
-      sums[i][1] += mean * mean;
-    }
-  }
-  const auto estimate = [&](const std::array<double, 2>& sum) -> CloudEstimate {
-    const auto count = static_cast<double>(batches);
-    const double mean = sum[0] / count;
-    const double variance = std::max(0.0, sum[1] / count - mean * mean);
-    return {mean, batches > 1 ? std::sqrt(variance / (count - 1.0)) : 0.0};
-  };
-  return {estimate(sums[0]), estimate(sums[1]), estimate(sums[2]), {}, batches * paths_per_batch};
-}
-
 /// Returns a method of `paths` paths for each ray. Sky and ground behind clouds are part of its light.
 ReadyCloudMethod ReadyPaths(const CloudUnderSun& under, std::size_t paths) {
   const CloudPathTracer tracer(*under.field, under.scatterers, under.surroundings);
   return {[tracer, paths](const CloudRay& ray) {
-            Fnv1a seed;  // differs from the seeds of the reference, which are small
-            for (int axis = 0; axis < 3; ++axis)
-              seed.Add(std::bit_cast<std::uint64_t>(ray.direction[axis]));
-            const CloudRadiance light = TracedLight(tracer, ray, seed.hash(), 1, paths);
+            const CloudRadiance light = TracedLight(tracer, ray, SeedOf(ray), 1, paths);
             return CloudRayLight{.sun = light.sun.value,
                                  .sky = light.sky.value,
                                  .ground = light.ground.value,
@@ -278,99 +240,47 @@ std::vector<std::optional<double>> CloudNumbers(const std::vector<CloudCase>& ca
   return numbers;
 }
 
-using ScreenColour = std::array<double, 3>;
-
-/// Returns a picture of colours in [0, 1], each pixel a square of the display.
-template <typename ColourOf>
-DisplayImage ScreenImage(const CloudRaster& raster, const ColourOf& colour_of) {
-  DisplayImage image{kScreenPixels * raster.columns, kScreenPixels * raster.lines, {}};
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const ScreenColour colour = colour_of(
-          static_cast<std::size_t>(y / kScreenPixels * raster.columns + x / kScreenPixels));
-      for (const double value : colour)
-        image.rgb.push_back(static_cast<std::uint8_t>(255.0 * std::clamp(value, 0.0, 1.0) + 0.5));
-    }
-  }
-  return image;
-}
-
-/// Returns white for no error, blue for too little light and red for too much.
-ScreenColour ErrorColour(double error) {
-  constexpr ScreenColour kBlue{0.02, 0.25, 0.65}, kRed{0.70, 0.05, 0.10};
-  const double share = std::min(std::abs(error) / kLargestShownError, 1.0);
-  const ScreenColour& end = error < 0.0 ? kBlue : kRed;
-  ScreenColour colour{};
-  for (std::size_t i = 0; i < 3; ++i) colour[i] = 1.0 + share * (end[i] - 1.0);
-  return colour;
-}
-
 /// One view of the field in whole light, by the reference and by every method.
 class CloudPictures {
  public:
   CloudPictures(const CloudScene& scene, const CloudStudySize& size)
-      : raster_(size.picture), traced_(static_cast<std::size_t>(raster_.columns * raster_.lines)) {
-    for (int i = 0; i < raster_.columns * raster_.lines; ++i)
-      rays_.push_back(scene.views[kPictureView].Ray(i, raster_));
-    const CloudPathTracer tracer = scene.TracerUnder(kPictureSun);
-    ForEachCase(rays_.size(), [&](std::size_t i) {
-      traced_[i] = WholeCloudLight(
-          TracedLight(tracer, rays_[i], i + 1, kReferenceBatches, size.picture_paths));
-    });
-    double noise = 0.0;
-    for (const CloudEstimate& each : traced_) {
-      mean_ += each.value / static_cast<double>(traced_.size());
-      white_ = std::max(white_, each.value - 2.0 * each.standard_error);
-    }
-    for (const CloudEstimate& each : traced_) {
-      noise += std::pow(each.standard_error / std::max(each.value, kDarkestCloud * mean_), 2) /
-               static_cast<double>(traced_.size());
-    }
-    Add("traced",
-        fmt::format("Traced paths: {} a pixel, standard error {:.1f} % (rms)",
-                    kReferenceBatches * size.picture_paths, 100.0 * std::sqrt(noise)),
-        [&](std::size_t i) { return Grey(traced_[i].value); });
-    Add("traced.error",
-        fmt::format("Standard error of the traced paths; full colour from {:.0f} % on",
-                    100.0 * kLargestShownError),
-        [&](std::size_t i) {
-          return ErrorColour(traced_[i].standard_error /
-                             std::max(traced_[i].value, kDarkestCloud * mean_));
-        });
-  }
+      : rays_(RaysOf(scene, size.picture)), pictures_(Traced(scene, size)) {}
 
   void Add(const CloudMethod& method, const ReadyCloudMethod& ready) {
     std::vector<double> found(rays_.size());
     ForEachCase(rays_.size(), [&](std::size_t i) {
       found[i] = WholeCloudLight(ready.light(rays_[i]), rays_[i]);
     });
-    Add(method.key, method.Name(), [&](std::size_t i) { return Grey(found[i]); });
-    Add(fmt::format("{}.error", method.key),
-        fmt::format("{}: error; blue: too dark, red: too bright, full colour from {:.0f} % on",
-                    method.Name(), 100.0 * kLargestShownError),
-        [&](std::size_t i) {
-          return ErrorColour((found[i] - traced_[i].value) /
-                             std::max(traced_[i].value, kDarkestCloud * mean_));
-        });
+    pictures_.Add(method.key, method.Name(), found);
   }
 
-  [[nodiscard]] std::vector<ReportPicture> Finished() && { return std::move(pictures_); }
+  [[nodiscard]] std::vector<ReportPicture> Finished() && { return std::move(pictures_).Finished(); }
 
  private:
-  [[nodiscard]] ScreenColour Grey(double light) const {
-    const double value = std::pow(std::max(light, 0.0) / white_, 1.0 / 2.2);
-    return {value, value, value};
+  [[nodiscard]] static std::vector<CloudRay> RaysOf(const CloudScene& scene,
+                                                    const CloudRaster& raster) {
+    std::vector<CloudRay> rays;
+    for (int i = 0; i < raster.columns * raster.lines; ++i)
+      rays.push_back(scene.views[kPictureView].Ray(i, raster));
+    return rays;
   }
-  template <typename ColourOf>
-  void Add(std::string key, std::string caption, const ColourOf& colour_of) {
-    pictures_.push_back({std::move(key), std::move(caption), ScreenImage(raster_, colour_of)});
+  [[nodiscard]] ErrorPictures Traced(const CloudScene& scene, const CloudStudySize& size) const {
+    const CloudPathTracer tracer = scene.TracerUnder(kPictureSun);
+    std::vector<CloudEstimate> traced(rays_.size());
+    ForEachCase(rays_.size(), [&](std::size_t i) {
+      traced[i] = WholeCloudLight(
+          TracedLight(tracer, rays_[i], i + 1, kReferenceBatches, size.picture_paths));
+    });
+    const double white = BrightestOf(traced);
+    return {
+        size.picture,
+        std::move(traced),
+        {"traced", fmt::format("Traced paths: {} a pixel", kReferenceBatches * size.picture_paths)},
+        white};
   }
 
-  CloudRaster raster_;
   std::vector<CloudRay> rays_;
-  std::vector<CloudEstimate> traced_;
-  double mean_ = 0.0, white_ = 1e-9;
-  std::vector<ReportPicture> pictures_;
+  ErrorPictures pictures_;
 };
 
 void AddCloudMethod(CloudStudy& study, const CloudScene& scene, const CloudMethod& method,

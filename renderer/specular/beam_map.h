@@ -38,6 +38,11 @@ class BeamMap {
 
   [[nodiscard]] const std::vector<PhotonBeam>& beams() const { return beams_; }
   [[nodiscard]] double radius_m() const { return radius_m_; }
+  /// Returns the memory of beams, pieces and tree [bytes].
+  [[nodiscard]] std::size_t bytes() const {
+    return beams_.size() * sizeof(PhotonBeam) + pieces_.all.size() * sizeof(Piece) +
+           pieces_.column_m.size() * sizeof(double) + tree_.bytes();
+  }
 
  private:
   struct Piece {

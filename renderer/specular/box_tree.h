@@ -69,6 +69,11 @@ class BoxTree {
   /// Returns the bounds of all boxes; low exceeds high if there are none.
   [[nodiscard]] Box Bounds() const { return nodes_.empty() ? Box{} : nodes_.front().box; }
 
+  /// Returns the memory of the tree [bytes].
+  [[nodiscard]] std::size_t bytes() const {
+    return nodes_.size() * sizeof(Node) + order_.size() * sizeof(order_.front());
+  }
+
   /// Calls visit(number) for all boxes whose group of up to four is in a box that the ray meets.
   template <typename Visit>
   void VisitAlong(const BoxRay& ray, const Visit& visit) const {

@@ -33,6 +33,12 @@ class PointMap {
   [[nodiscard]] SpectrumOf<double> Radiance(const glm::dvec3& origin, const glm::dvec3& direction,
                                             double length_m) const;
 
+  /// Returns the memory of points and tree [bytes].
+  [[nodiscard]] std::size_t bytes() const {
+    return points_.all.size() * sizeof(Point) + points_.column_m.size() * sizeof(double) +
+           tree_.bytes();
+  }
+
  private:
   struct Point {
     glm::dvec3 place;

@@ -4,7 +4,7 @@
 // cones. MOST limits the number of photons (1000000), G is the
 // mean cosine of the fog (0).
 //
-// The picture and its errors are those of tests/fixtures/sphere_caustic.h; made pictures take one ray in
+// The picture and its errors are those of renderer/report/sphere_caustic.h; made pictures take one ray in
 // each pixel, true ones the mean of 16. A path tracer from the eye has no row: its paths never find
 // parallel light behind glass. Times are of the processor, of all threads.
 #include <fmt/format.h>
@@ -12,17 +12,15 @@
 #include <cmath>
 #include <ctime>
 #include <glm/vec3.hpp>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "atmosphere/base/parsing.h"
+#include "renderer/report/sphere_caustic.h"
 #include "renderer/specular/beam_map.h"
 #include "renderer/specular/photon_beams.h"
 #include "renderer/specular/point_map.h"
 #include "tests/bench/studies.h"
-#include "tests/fixtures/homogeneous_fog.h"
-#include "tests/fixtures/sphere_caustic.h"
 
 namespace alpenglow::tests {
 namespace {
@@ -49,7 +47,7 @@ void PrintErrors(const CausticCase& of, const Map& map, double made_s, const Cau
     return map.Radiance(view.eye(), direction, view.kEnd_m)[0];
   });
   const double picture_s = ProcessorTime_s() - begin_s;
-  const CausticErrors errors = ErrorsOf(picture, truth);
+  const CausticErrors errors = CausticErrorsOf(picture, truth);
   fmt::print("{} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:+.2f} | {:.2f} | {:.2f}\n", of.name,
              of.photons, of.radius_pixels, 100.0 * errors.median, 100.0 * errors.rms,
              100.0 * errors.focus, 100.0 * errors.bias, made_s, picture_s);
@@ -70,14 +68,9 @@ void CausticError(int count, char** arguments) {
   fmt::print(
       "method | photons | radius, pixels | median % | rms % | focus % | bias % | map s | "
       "picture s\n");
-  const std::vector<SpecularSphere> ball{{.radius_m = 1.0, .index = 1.5}};
-  const auto no_end = [](const glm::dvec3&, const glm::dvec3&) {
-    return std::numeric_limits<double>::infinity();
-  };
   for (const int photons : {10000, 100000, 1000000}) {
     if (photons > most) break;
-    const std::vector<PhotonBeam> beams = FollowPhotons(
-        ball, {{0.0, 0.0, -1.0}, 0.0}, {.photons = photons, .longest_m = 15.0}, no_end);
+    const std::vector<PhotonBeam> beams = BeamsOfBall(photons);
     for (const double pixels : {4.0, 2.0, 1.0, 0.5, 0.25}) {
       const double radius_m = pixels * view.kPixel_m;
       begin_s = ProcessorTime_s();

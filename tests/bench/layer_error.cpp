@@ -2,21 +2,20 @@
 // studies layer_error [G]: errors and times of light in plane-parallel layers (renderer/layers) by
 // the number of streams, relative to 48 streams. G is the mean cosine of the cloud (0.85).
 //
-// A cloud lies between two layers of molecules. Radiances are taken at seven depths in random
-// directions beyond 3 degrees from the sun. Times are of the processor: the least of twenty runs.
+// Cases are those of renderer/report/layer_cases.h. Times are of the processor: the least of twenty
+// runs.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <ctime>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "atmosphere/base/parsing.h"
-#include "atmosphere/math/constants.h"
 #include "renderer/layers/layer_field.h"
+#include "renderer/report/layer_cases.h"
 #include "tests/bench/studies.h"
 
 namespace alpenglow::tests {
@@ -26,50 +25,13 @@ using namespace renderer;
 
 constexpr int kTrueStreams = 48;
 
-std::vector<double> MomentsOfLobe(double g) {
-  std::vector<double> chi{1.0};
-  while (std::abs(chi.back()) > 1e-9) chi.push_back(chi.back() * g);
-  return chi;
-}
-
-std::vector<LayerOptics> CloudInAir(double depth, double g) {
-  const std::vector<double> molecules{1.0, 0.0, 0.1};
-  return {{0.17, 1.0, molecules}, {depth, 0.9999, MomentsOfLobe(g)}, {0.05, 1.0, molecules}};
-}
-
-/// Light of all cases, in one order.
-struct LightOfLayers {
-  std::vector<double> radiances, fluxes;  // relative to the incident flux
-};
-
-void AddLight(const LayerStack& stack, double mu_s, std::mt19937& engine, LightOfLayers& light) {
-  std::uniform_real_distribution<double> number(0.0, 1.0);
-  const LayerField field = LayerField::UnderSun(stack, mu_s);
-  const double top = stack.DepthAbove(1), cloud = stack.optics(1).optical_depth;
-  const double whole = stack.DepthAbove(stack.size());
-  for (const double depth :
-       {0.0, top, top + 0.1 * cloud, top + 0.5 * cloud, top + 0.9 * cloud, whole - 0.05, whole}) {
-    const LayerFluxes fluxes = field.Fluxes(depth);
-    light.fluxes.push_back(fluxes.up / mu_s);
-    light.fluxes.push_back(fluxes.down / mu_s);
-    for (int i = 0; i < 12; ++i) {
-      const LightWay way{2.0 * number(engine) - 1.0, kPi * number(engine)};
-      const double sines = std::sqrt((1.0 - way.mu * way.mu) * (1.0 - mu_s * mu_s));
-      const double nu = sines * std::cos(way.azimuth) - way.mu * mu_s;
-      if (nu > std::cos(3.0 * kRadiansPerDegree) || (depth == 0.0 && way.mu < 0.0)) continue;
-      light.radiances.push_back(field.Radiance(depth, way));
-    }
-  }
-}
-
-LightOfLayers LightBy(int streams, double g) {
+LightOfLayers LightBy(const std::vector<LayerCase>& cases, int streams) {
   LightOfLayers light;
-  std::mt19937 engine(3);
-  for (const double depth : {0.3, 1.0, 5.0, 20.0, 60.0}) {
-    for (const double ground : {0.1, 0.8}) {
-      const LayerStack stack(CloudInAir(depth, g), ground, streams);
-      for (const double mu_s : {0.15, 0.5, 0.9}) AddLight(stack, mu_s, engine, light);
-    }
+  for (const LayerCase& one : cases) {
+    const LayerStack stack(one.layers, one.ground_albedo, streams);
+    const LightOfLayers more = LightIn(one, LayerField::UnderSun(stack, one.mu_s));
+    light.radiances.insert(light.radiances.end(), more.radiances.begin(), more.radiances.end());
+    light.fluxes.insert(light.fluxes.end(), more.fluxes.begin(), more.fluxes.end());
   }
   return light;
 }
@@ -99,10 +61,11 @@ std::string TimesOf(const std::vector<LayerOptics>& layers, int streams) {
 
 void LayerError(int count, char** arguments) {
   const double g = count > 1 ? ParseNumber(arguments[1]).value() : 0.85;
-  const LightOfLayers truth = LightBy(kTrueStreams, g);
+  const std::vector<LayerCase> cases = LayerCasesOf(g);
+  const LightOfLayers truth = LightBy(cases, kTrueStreams);
   fmt::print("streams | rms % | p99 % | largest % | flux % | 1 layer, 3 layers: stack / sun us\n");
   for (const int streams : {4, 6, 8, 12, 16, 32}) {
-    const LightOfLayers light = LightBy(streams, g);
+    const LightOfLayers light = LightBy(cases, streams);
     std::vector<double> errors;
     double squares = 0.0, flux = 0.0;
     for (std::size_t i = 0; i < truth.radiances.size(); ++i) {

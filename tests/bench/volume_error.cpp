@@ -22,13 +22,13 @@
 #include "renderer/cloud_light/cloud_path_tracer.h"
 #include "renderer/media/media_march.h"
 #include "renderer/media/volume_orders.h"
-#include "renderer/report/cloud_views.h"
+#include "renderer/report/plume_light.h"
 #include "tests/bench/studies.h"
-#include "tests/fixtures/plume.h"
-#include "tests/fixtures/plume_views.h"
 
 namespace alpenglow::tests {
 namespace {
+
+using namespace renderer;
 
 constexpr std::array<PlumeCase, 6> kPlumes{{{10.0, 1.0, 0.85},
                                             {10.0, 0.8, 0.85},
@@ -62,7 +62,9 @@ void VolumeError(int count, char** arguments) {
     if (depth > 0.0 && of.largest_depth != depth) continue;
     const Plume plume = MakePlume(of);
     const std::vector<PlumeRay> traced = TracedPlume(plume, to_sun, paths, 16);
-    PrintRow(of, "single", 0.0, 0.0, ErrorsOfPlume(traced, FirstOrderOfPlume(plume, to_sun)));
+    PrintRow(of, "single", 0.0, 0.0, ErrorsOfPlume(traced, [&](const CloudRay& ray) {
+               return FirstOrderOfPlume(plume, to_sun, ray);
+             }));
     for (const double cells : {4096.0, 32768.0, 262144.0}) {
       const std::clock_t begin = std::clock();
       const auto wall = std::chrono::steady_clock::now();

@@ -15,16 +15,12 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "renderer/media/media_march.h"
-#include "tests/fixtures/plume.h"
-#include "tests/fixtures/plume_views.h"
+#include "renderer/report/plume.h"
+#include "renderer/report/plume_light.h"
 #include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::renderer {
 namespace {
-
-using tests::MakePlume;
-using tests::Plume;
-using tests::PlumeCase;
 
 constexpr double kVolumeCells = tests::ScaledDown(VolumeOrders::kMostCells, 8192.0);
 
@@ -88,12 +84,12 @@ const std::array<CloudRay, 3> kRaysThroughSmoke{{{{-500.0, 3.0, 40.0}, {1.0, 0.0
 void ExpectPlumeErrors(const PlumeCase& of, int side, double most_rms) {
   const Plume plume = MakePlume(of);
   const glm::dvec3 to_sun = TowardsAzimuth(20.0, 35.0);
-  const auto traced = tests::TracedPlume(plume, to_sun, 104, side);
-  const tests::PlumeOrders orders(plume, to_sun, kVolumeCells);
-  const tests::PlumeErrors all =
-      tests::ErrorsOfPlume(traced, [&](const CloudRay& ray) { return orders.Along(ray); });
-  const tests::PlumeErrors single =
-      tests::ErrorsOfPlume(traced, tests::FirstOrderOfPlume(plume, to_sun));
+  const auto traced = TracedPlume(plume, to_sun, 104, side);
+  const PlumeOrders orders(plume, to_sun, kVolumeCells);
+  const PlumeErrors all =
+      ErrorsOfPlume(traced, [&](const CloudRay& ray) { return orders.Along(ray); });
+  const PlumeErrors single = ErrorsOfPlume(
+      traced, [&](const CloudRay& ray) { return FirstOrderOfPlume(plume, to_sun, ray); });
   // The coarse cells of the small case are twice as far from the truth.
   const double more = tests::ScaledDown(1.0, 2.0);
   EXPECT_LT(all.sun.Rms(), more * most_rms) << of.albedo << ", " << of.g;
