@@ -17,10 +17,13 @@
 #include "lut/report/svg_plot.h"
 #include "lut/tables/transmittance_table.h"
 #include "renderer/illumination/aerial_perspective.h"
+#include "renderer/report/report_caustics.h"
 #include "renderer/report/report_clouds.h"
 #include "renderer/report/report_lamps.h"
+#include "renderer/report/report_layers.h"
 #include "renderer/report/report_pictures.h"
 #include "renderer/report/report_shafts.h"
+#include "renderer/report/report_volumes.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -219,10 +222,11 @@ ReportWords WordsOfReport() {
       .lead =
           "The parts of a picture of terrain in real air are compared with slow reference "
           "solutions: the air in front of mountains, shafts of light and shadow in it, clouds, "
-          "lamps "
-          "in fog, and whole pictures. Methods of this library and of the literature are evaluated "
-          "on "
-          "the same cases in one run.",
+          "plane "
+          "layers of cloud, plumes of smoke, the caustic of a glass sphere, lamps in fog, and "
+          "whole "
+          "pictures. Methods of this library and of the literature are evaluated on the same cases "
+          "in one run.",
       .minute =
           "For each topic, this section names the fastest method whose errors are not visible in "
           "any of its columns. An error of 1 % in radiance is about the smallest step between "
@@ -230,10 +234,12 @@ ReportWords WordsOfReport() {
       .reading =
           "Every topic describes its cases and the values to which its errors are relative. "
           "Columns "
-          "are elevations of the sun, kinds of fog, numbers of lamps or times of the day. Cells "
-          "are "
-          "empty if a method does not support a column. Methods of the literature use this "
-          "library's columns, geometry and kernels, so that the remaining errors are their own."};
+          "are elevations of the sun, optical depths, kinds of fog, numbers of lamps or times of "
+          "the "
+          "day. Cells are empty if a method does not support a column. Methods of the literature "
+          "use "
+          "this library's columns, geometry and kernels, so that the remaining errors are their "
+          "own."};
 }
 
 }  // namespace
@@ -308,8 +314,8 @@ Report MeasurePictureReport(const ReportOptions& options) {
     for (const Medium& medium : options.mediums)
       topics.emplace_back([measure, &medium, &effort] { return measure(medium, effort); });
   }
-  for (const auto measure :
-       {MeasureShafts, MeasureClouds, MeasureAirlight, MeasureManyLamps, MeasurePictures}) {
+  for (const auto measure : {MeasureShafts, MeasureClouds, MeasureLayers, MeasureVolumes,
+                             MeasureCaustics, MeasureAirlight, MeasureManyLamps, MeasurePictures}) {
     topics.emplace_back([measure, &effort] { return measure(effort); });
   }
   return MeasureTopics(WordsOfReport(), options.quick, options.progress, topics);

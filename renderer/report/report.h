@@ -3,8 +3,8 @@
 // one run.
 //
 // Topics, each measured on its own: aerial perspective and transmittance in front of terrain,
-// shafts, clouds, one lamp in a medium, many lamps, whole pictures. Rows, folders and pages are those of
-// lut/report/report.h; WriteReport writes them.
+// shafts, clouds, plane layers, volumes of smoke, caustics of glass, one lamp in a medium, many lamps,
+// whole pictures. Rows, folders and pages are those of lut/report/report.h; WriteReport writes them.
 #pragma once
 
 #include "lut/report/error_study.h"

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lut/image/svg_elements.h"
@@ -35,6 +37,11 @@ const ReportRow& RowOf(std::string_view topic, std::string_view name) {
   return tests::RowOf(QuickReport(), topic, name);
 }
 
+constexpr const char* kTwoStreams = "two streams (Joseph et al. 1976)";
+constexpr const char* kManyBeams = "beams, 1e4 photons, radius 1";
+constexpr const char* kManyPoints = "points (Jarosz et al. 2008), 1e5 photons, radius 2";
+constexpr const char* kEyePaths = "paths from the eye: find wide light only, 1004 paths";
+
 void ExpectLessErrorEverywhere(const char* topic, const char* better, const char* worse) {
   const ReportRow& good = RowOf(topic, better);
   const ReportRow& bad = RowOf(topic, worse);
@@ -56,7 +63,7 @@ TEST_F(PictureReportFiles, EveryTopicHasATableAndAPlot) {
     names.insert(entry.path().filename());
   for (const char* file : {"index.html", "summary.md"}) EXPECT_EQ(names.count(file), 1U) << file;
   for (const char* key : {"aerial_perspective", "terrain_transmittance", "shafts", "clouds",
-                          "airlight", "many_lamps", "pictures"}) {
+                          "layers", "volumes", "caustics", "airlight", "many_lamps", "pictures"}) {
     EXPECT_EQ(names.count(std::string(key) + ".csv"), 1U) << key;
     EXPECT_EQ(std::count_if(names.begin(), names.end(),
                             [&](const std::string& name) {
@@ -109,6 +116,16 @@ TEST(PictureReport, MoreEffortGivesLessError) {
            {"shafts", "shadow heights, automatic nodes", "no shafts"},
            {"airlight", "panels around the light, 32 nodes", "panels around the light, 8 nodes"},
            {"airlight", "uniform march, 256 points", "uniform march, 16 points"},
+           {"layers", "discrete ordinates, 4 streams", "discrete ordinates, 2 streams"},
+           {"layers", "discrete ordinates, 8 streams", "discrete ordinates, 4 streams"},
+           {"layers", "discrete ordinates, 12 streams", "discrete ordinates, 8 streams"},
+           {"layers", "discrete ordinates, 4 streams", kTwoStreams},
+           {"volumes", "moments on cells, 4096 cells", "moments on cells, 512 cells"},
+           {"volumes", "moments on cells, 512 cells", "single scattering"},
+           {"volumes", "path tracing, 256 paths", "path tracing, 16 paths"},
+           {"caustics", kManyBeams, "beams, 1e3 photons, radius 1"},
+           {"caustics", kManyPoints, "points (Jarosz et al. 2008), 1e4 photons, radius 2"},
+           {"caustics", kManyPoints, kEyePaths},
            {"pictures", "samples of a pixel, 4", "without higher orders"}})
     ExpectLessErrorEverywhere(topic, better, worse);
 }
@@ -134,18 +151,23 @@ TEST(PictureReport, ClosedFormOfSunEtAlNeedsUniformIsotropicFog) {
   for (std::size_t r = 1; r < row.at.size(); ++r) EXPECT_FALSE(row.at[r].IsMeasured());
 }
 
-/// Returns a number of a further table of clouds under a sun.
-double NumberOf(std::string_view sun, std::string_view method, std::string_view column) {
-  for (const ReportTable& table : tests::TopicOf(QuickReport(), "clouds").tables) {
-    if (table.key != sun) continue;
+/// Returns a cell of a further table of a topic.
+std::optional<double> CellOf(std::string_view topic, std::string_view key, std::string_view method,
+                             std::string_view column) {
+  for (const ReportTable& table : tests::TopicOf(QuickReport(), topic).tables) {
+    if (table.key != key) continue;
     for (const ReportTable::Line& line : table.lines) {
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        if (line.method == method && table.columns[i].name == column)
-          return line.values.at(i).value();
+        if (line.method == method && table.columns[i].name == column) return line.values.at(i);
       }
     }
   }
   throw InternalError("no number " + std::string(method) + ", " + std::string(column));
+}
+
+/// Returns a number of a further table of clouds under a sun.
+double NumberOf(std::string_view sun, std::string_view method, std::string_view column) {
+  return CellOf("clouds", sun, method, column).value();
 }
 
 TEST(PictureReport, CloudsNeedLightOfAllOrders) {
@@ -165,12 +187,87 @@ TEST(PictureReport, CloudsNeedLightOfAllOrders) {
 }
 
 TEST(PictureReport, EveryMethodOfCloudsHasItsPictureAndItsErrors) {
-  const ReportTopic& clouds = tests::TopicOf(QuickReport(), "clouds");
-  EXPECT_EQ(clouds.pictures.size(), 2 * (clouds.rows.size() + 1));
-  for (const ReportTable& table : clouds.tables) {
-    EXPECT_EQ(table.lines.size(), clouds.rows.size());
-    for (const ReportTable::Line& line : table.lines)
-      EXPECT_EQ(line.values.size(), table.columns.size());
+  for (const char* key : {"clouds", "volumes"}) {
+    const ReportTopic& topic = tests::TopicOf(QuickReport(), key);
+    EXPECT_EQ(topic.pictures.size(), 2 * (topic.rows.size() + 1)) << key;
+  }
+  // The four maps of photons and the reference; paths from the eye are dark.
+  EXPECT_EQ(tests::TopicOf(QuickReport(), "caustics").pictures.size(), 2U * (4 + 1));
+}
+
+TEST(PictureReport, FurtherTablesHaveALineForEveryMethod) {
+  for (const char* key : {"clouds", "layers", "volumes", "caustics"}) {
+    const ReportTopic& topic = tests::TopicOf(QuickReport(), key);
+    EXPECT_FALSE(topic.tables.empty()) << key;
+    for (const ReportTable& table : topic.tables) {
+      EXPECT_EQ(table.lines.size(), topic.rows.size()) << key;
+      for (const ReportTable::Line& line : table.lines) {
+        ASSERT_EQ(line.values.size(), table.columns.size()) << key;
+        for (const std::optional<double>& value : line.values)
+          EXPECT_TRUE(std::isfinite(value.value_or(0.0))) << key << ", " << line.method;
+      }
+    }
+  }
+}
+
+TEST(PictureReport, EightStreamsKeepTheirBoundsAtEveryDepth) {
+  // The bounds of LayerField: renderer/layers/layer_field.h.
+  const ReportRow& row = RowOf("layers", "discrete ordinates, 8 streams");
+  const ReportTopic& layers = tests::TopicOf(QuickReport(), "layers");
+  for (std::size_t r = 0; r < row.at.size(); ++r) {
+    EXPECT_LT(row.at[r].error.Rms(), 0.01) << layers.regimes[r].name;
+    EXPECT_LT(row.at[r].error.Quantile(0.95), 0.04) << "99 of 100 of all depths together";
+    const std::string flux = std::string("flux at ") + layers.regimes[r].key + ": largest";
+    EXPECT_LT(CellOf("layers", "fluxes", row.Name(), flux).value(), 0.0015);
+    // Eddington's approximation errs by percents, in the literature by up to a tenth.
+    const double two = CellOf("layers", "fluxes", kTwoStreams, flux).value();
+    EXPECT_GT(two, 0.01);
+    EXPECT_LT(two, 0.1);
+  }
+}
+
+TEST(PictureReport, VolumesHaveLightOfAllOrders) {
+  constexpr const char* kMoments = "moments on cells, 4096 cells";
+  // The bounds of VolumeOrders are 6 and 9 % with cells of the plume's structures; those of the quick
+  // report are coarser, and its rays and paths scatter by some hundredths.
+  for (const auto& [depth, most_rms] : {std::pair{"depth10", 0.12}, {"depth50", 0.18}}) {
+    EXPECT_LT(CellOf("volumes", depth, kMoments, "whole: rms").value(), most_rms);
+    EXPECT_LT(CellOf("volumes", depth, kMoments, "whole: median").value(), most_rms);
+    EXPECT_LT(std::abs(CellOf("volumes", depth, kMoments, "whole: bias").value()), most_rms);
+    EXPECT_LT(CellOf("volumes", depth, "single scattering", "whole: bias").value(), -0.5);
+    // The scatter of paths is their own standard error; 30 rays know it to a fifth.
+    for (const char* paths : {"path tracing, 16 paths", "path tracing, 256 paths"}) {
+      const double error = CellOf("volumes", depth, paths, "standard error").value();
+      EXPECT_GT(CellOf("volumes", depth, paths, "whole: rms").value(), 0.4 * error) << paths;
+      EXPECT_LT(CellOf("volumes", depth, paths, "whole: rms").value(), 2.5 * error) << paths;
+    }
+    EXPECT_FALSE(CellOf("volumes", depth, kMoments, "standard error").has_value());
+    EXPECT_GT(CellOf("volumes", depth, kMoments, "memory").value(),
+              CellOf("volumes", depth, "moments on cells, 512 cells", "memory").value());
+  }
+}
+
+TEST(PictureReport, PathsFromTheEyeFindOnlyWideLightBehindGlass) {
+  for (const char* kind : {"isotropic", "forward"}) {
+    EXPECT_EQ(CellOf("caustics", kind, kEyePaths, "bias").value(), -1.0) << kind;
+    EXPECT_EQ(CellOf("caustics", kind, kEyePaths, "standard error").value(), 0.0) << kind;
+  }
+  const double error = CellOf("caustics", "wide", kEyePaths, "standard error").value();
+  EXPECT_GT(error, 0.0);
+  EXPECT_LT(CellOf("caustics", "wide", kEyePaths, "rms").value(), 2.0 * error);
+  // The mean of 60 pixels, each of which scatters by its own light and half.
+  EXPECT_NEAR(CellOf("caustics", "wide", kEyePaths, "bias").value(), 0.0, 0.6);
+}
+
+TEST(PictureReport, BeamsHaveTheLightOfTheCaustic) {
+  // A tenth of the beams of the bounds of renderer/specular/README.md, with three times their noise.
+  EXPECT_LT(CellOf("caustics", "isotropic", kManyBeams, "median").value(), 0.06);
+  EXPECT_LT(CellOf("caustics", "isotropic", kManyBeams, "focus").value(), 0.27);
+  EXPECT_LT(CellOf("caustics", "forward", kManyBeams, "median").value(), 0.15);
+  EXPECT_LT(CellOf("caustics", "wide", kManyBeams, "median").value(), 0.15);
+  for (const char* kind : {"isotropic", "forward", "wide"}) {
+    EXPECT_LT(std::abs(CellOf("caustics", kind, kManyBeams, "bias").value()), 0.06) << kind;
+    EXPECT_GT(CellOf("caustics", kind, kManyBeams, "memory").value(), 1e6) << "beams, and a tree";
   }
 }
 
