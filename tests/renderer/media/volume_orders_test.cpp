@@ -81,7 +81,8 @@ const std::array<CloudRay, 3> kRaysThroughSmoke{{{{-500.0, 3.0, 40.0}, {1.0, 0.0
 
 /// Errors of the whole light of a plume, of all orders and of the first.
 /// @param side  of the raster of rays of a view.
-void ExpectPlumeErrors(const PlumeCase& of, int side, double most_rms) {
+/// @param of_first  the least error of the first order alone.
+void ExpectPlumeErrors(const PlumeCase& of, int side, double most_rms, double of_first = 0.5) {
   const Plume plume = MakePlume(of);
   const glm::dvec3 to_sun = TowardsAzimuth(20.0, 35.0);
   const auto traced = TracedPlume(plume, to_sun, 104, side);
@@ -94,7 +95,7 @@ void ExpectPlumeErrors(const PlumeCase& of, int side, double most_rms) {
   const double more = tests::ScaledDown(1.0, 2.0);
   EXPECT_LT(all.sun.Rms(), more * most_rms) << of.albedo << ", " << of.g;
   EXPECT_LT(all.whole.Rms(), more * most_rms) << of.albedo << ", " << of.g;
-  EXPECT_GT(single.sun.Rms(), 0.5) << "what the first order alone is wrong by";
+  EXPECT_GT(single.sun.Rms(), of_first) << "what the first order alone is wrong by";
 }
 
 TEST(VolumeOrders, PlumesOfDepth10HaveTheLightOfTracedPaths) {
@@ -213,9 +214,11 @@ TEST(VolumeOrders, ATurnedBodyHasTheSameLight) {
 }
 
 TEST(VolumeOrders, LobesBackwardsHaveTheLightOfTracedPaths) {
-  for (const double g : {-0.5, -0.7}) {
-    if (tests::ScaledDown(false, g < -0.5)) continue;
-    ExpectPlumeErrors({10.0, 1.0, g, tests::ScaledDown(64, 24)}, tests::ScaledDown(4, 2), 0.06);
+  constexpr double kOfFirst = 0.4;  // most light of such lobes turns back at once
+  const std::vector<double> lobes{-0.5, -0.7};
+  for (std::size_t i = 0; i < tests::ScaledDown(lobes.size(), std::size_t{1}); ++i) {
+    ExpectPlumeErrors({10.0, 1.0, lobes[i], tests::ScaledDown(64, 24)}, tests::ScaledDown(4, 2),
+                      0.06, kOfFirst);
   }
 }
 
@@ -272,12 +275,13 @@ TEST(VolumeOrders, FacesOfDeepBodiesHaveTheLightOfDeepMedia) {
                                         {{0.0, 0.0, 200.0}, {0.0, 0.0, -1.0}}}};
     for (const CloudRay& ray : rays) {
       const double truth = medium.Radiance(1.0, -glm::dot(ray.direction, kSunOverSmoke));
-      EXPECT_NEAR(SunlitRadiance(box, orders, ray) / truth, 1.0, 0.08)
+      EXPECT_NEAR(SunlitRadiance(box, orders, ray) / truth, 1.0, tests::ScaledDown(0.08, 0.12))
           << "light spreads over some cells, and cells below the surface are as deep as a free "
              "path";
     }
     const CloudRay from_behind{{-200.0, 0.0, 30.0}, {1.0, 0.0, 0.0}};
-    EXPECT_LT(SunlitRadiance(box, orders, from_behind), 0.005) << "nothing comes through";
+    EXPECT_LT(SunlitRadiance(box, orders, from_behind), tests::ScaledDown(0.005, 0.01))
+        << "nothing comes through";
   }
 }
 
