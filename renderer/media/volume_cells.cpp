@@ -64,7 +64,8 @@ std::array<int, 3> CellCountOf(const glm::dvec3& size_m, double thickest_per_m, 
 
 /// Returns the lattice of a box around the origin, of which the cells are larger by a factor than
 /// those of a count.
-CloudCellLattice LatticeOf(const glm::dvec3& size_m, const std::array<int, 3>& finest, int times) {
+CloudCellLattice VolumeLatticeOf(const glm::dvec3& size_m, const std::array<int, 3>& finest,
+                                 int times) {
   CloudCellLattice lattice{finest, -0.5 * size_m, glm::dvec3(1.0)};
   for (int axis = 0; axis < 3; ++axis) {
     int& count = lattice.count[static_cast<std::size_t>(axis)];
@@ -138,7 +139,7 @@ void EachCellAlong(const CloudCellLattice& lattice, const glm::dvec3& origin,
   }
 }
 
-std::size_t PlaceIn(const CloudCellLattice& lattice, const CellPlace& cell) {
+std::size_t PlaceInLattice(const CloudCellLattice& lattice, const CellPlace& cell) {
   const auto columns = static_cast<std::size_t>(lattice.count[0]);
   const auto lines = static_cast<std::size_t>(lattice.count[1]);
   return (static_cast<std::size_t>(cell[2]) * lines + static_cast<std::size_t>(cell[1])) * columns +
@@ -149,7 +150,7 @@ std::size_t PlaceIn(const CloudCellLattice& lattice, const CellPlace& cell) {
 bool LowerDepth(const CloudCellLattice& lattice, const CellPlace& cell, std::vector<float>& depth) {
   const glm::dvec3& cell_m = lattice.cell_m;
   const double shortest_m = std::min({cell_m.x, cell_m.y, cell_m.z});
-  float& here = depth[PlaceIn(lattice, cell)];
+  float& here = depth[PlaceInLattice(lattice, cell)];
   bool changed = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double wider =
@@ -159,7 +160,7 @@ bool LowerDepth(const CloudCellLattice& lattice, const CellPlace& cell, std::vec
       beside[axis] += side;
       const auto most = static_cast<float>(
           wider * std::max(VolumeCells::kOuterDepth,
-                           2.0 * static_cast<double>(depth[PlaceIn(lattice, beside)])));
+                           2.0 * static_cast<double>(depth[PlaceInLattice(lattice, beside)])));
       changed = changed || here > most;
       here = std::min(here, most);
     }
@@ -250,11 +251,12 @@ VolumeCells::VolumeCells(const LocalBody& volume, const Options& options)
       samples_per_side_(SamplesPerSide(volume, options.most_cells)) {
   const glm::dvec3 size_m = SidesByLength(volume.placement());
   const std::array<int, 3> finest = CellCountOf(size_m, options.thickest_per_m, options.most_cells);
-  lattice_ = LatticeOf(size_m, finest, 1);
+  lattice_ = VolumeLatticeOf(size_m, finest, 1);
   Limit(options.scaled_per_m);
   for (const int times : {4, 2, 1}) {
-    grids_.push_back(std::make_shared<const CloudCells>(
-        LatticeOf(size_m, finest, times), [&](const CloudBox& cell) { return ContentOf(cell); }));
+    grids_.push_back(
+        std::make_shared<const CloudCells>(VolumeLatticeOf(size_m, finest, times),
+                                           [&](const CloudBox& cell) { return ContentOf(cell); }));
   }
 }
 
@@ -264,7 +266,7 @@ std::size_t VolumeCells::PlaceOf(const glm::dvec3& in_cells) const {
   for (std::size_t axis = 0; axis < 3; ++axis)
     cell[axis] =
         static_cast<int>(std::clamp(at[static_cast<int>(axis)], 0.0, lattice_.count[axis] - 1.0));
-  return PlaceIn(lattice_, cell);
+  return PlaceInLattice(lattice_, cell);
 }
 
 double VolumeCells::DensityAt(const glm::dvec3& in_cells) const {
@@ -296,7 +298,7 @@ void VolumeCells::Limit(double scaled_per_m) {
         samples += 1.0;
       });
       const double mean = samples > 0.0 ? sum / samples : 0.0;
-      whole[PlaceIn(lattice_, cell)] = static_cast<float>(scaled_per_m * shortest_m * mean);
+      whole[PlaceInLattice(lattice_, cell)] = static_cast<float>(scaled_per_m * shortest_m * mean);
     }
   });
   const std::vector<float> depth = LimitedDepths(lattice_, whole);
@@ -312,14 +314,14 @@ void VolumeCells::EachStretch(const glm::dvec3& origin, const glm::dvec3& direct
   const std::optional<LineSpan> span = volume_.SpanAlong(origin, direction, length_m);
   if (!span) return;
   const glm::dvec3 start = origin + span->begin_m * direction;
-  EachCellAlong(lattice_, PointInCells(start), DirectionInCells(direction),
-                span->end_m - span->begin_m,
-                [&](const CellPlace& cell, double begin_m, double end_m) {
-                  const double whole_m =
-                      volume_.Column(start + begin_m * direction, direction, end_m - begin_m);
-                  return visit(span->begin_m + begin_m, span->begin_m + end_m,
-                               static_cast<double>(kept_[PlaceIn(lattice_, cell)]) * whole_m);
-                });
+  EachCellAlong(
+      lattice_, PointInCells(start), DirectionInCells(direction), span->end_m - span->begin_m,
+      [&](const CellPlace& cell, double begin_m, double end_m) {
+        const double whole_m =
+            volume_.Column(start + begin_m * direction, direction, end_m - begin_m);
+        return visit(span->begin_m + begin_m, span->begin_m + end_m,
+                     static_cast<double>(kept_[PlaceInLattice(lattice_, cell)]) * whole_m);
+      });
 }
 
 double VolumeCells::Column(const glm::dvec3& origin, const glm::dvec3& direction,

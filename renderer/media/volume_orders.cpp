@@ -24,7 +24,7 @@ constexpr double kLeastPeak = 1e-6;
 // stands for the peak of those without one.
 constexpr double kNearlyIsotropic = 0.032;
 // Deep bodies have light whose changes are much smaller than its error.
-constexpr double kTolerance = 1e-3;
+constexpr double kVolumeTolerance = 1e-3;
 // Light from larger optical depths is not seen.
 constexpr double kDeepestSeen = 16.0;
 constexpr double kY00 = 0.28209479177387814;  // 1 / sqrt(4 pi)
@@ -178,7 +178,7 @@ void VolumeOrders::SolveAll(const VolumeIllumination& light) {
 void VolumeOrders::Solve(std::size_t band, const VolumeIllumination& light) {
   const VolumeCells& cells = CellsOf(band);
   const CloudMomentSolver solver(cells.grids(), volume_.optics().extinction_per_m[band],
-                                 optics_[band], {.tolerance = kTolerance});
+                                 optics_[band], {.tolerance = kVolumeTolerance});
   const auto moments = [&](const CloudIllumination& of) {
     return std::make_shared<const CloudMoments>(solver.Light(of).moments);
   };

@@ -61,7 +61,7 @@ struct LampBeam {
 /// The sources of light in a body. Functions are called from many threads.
 struct VolumeIllumination {
   glm::dvec3 to_sun{0.0, 0.0, 1.0};  // in the frame of SceneGround, unit
-  bool has_sun = false;
+  bool has_sun = false;              // whether the sun shines on the body
   /// Returns the radiance that arrives from a direction, in any unit; null: none.
   std::function<Spectrum(const glm::dvec3& from)> sky;
   /// Returns the beams of lamps at a point; null: no lamps.
