@@ -259,7 +259,7 @@ TEST(ClassifiedVolume, MarchedLightIsThatOfManySmallSteps) {
 /// Returns unit radiance from all directions.
 VolumeIllumination UniformSkyOnShells(bool emits) {
   return {.to_sun = kSunOverShells,
-          .sun_column_m = nullptr,
+          .has_sun = false,
           .sky = [](const glm::dvec3&) { return Spectrum(3, 1.0F); },
           .lamps = nullptr,
           .emits = emits};
@@ -269,7 +269,7 @@ VolumeIllumination UniformSkyOnShells(bool emits) {
 MarchedLight AllOrders(const std::shared_ptr<const ClassifiedVolume>& volume,
                        const VolumeOrders& orders, const ShellRay& ray,
                        Spectrum VolumeOrders::Scattered::*part) {
-  const VolumeOrders::Look look = orders.LookAlong(ray.direction);
+  const VolumeOrders::Look look = orders.LookAlong(ray.origin, ray.direction);
   const auto source = [&](double, const glm::dvec3& point, std::span<const double> densities,
                           std::span<const double> columns_m) {
     const double to_sun_m = volume->Column(point, kSunOverShells, 1e4);
@@ -344,12 +344,7 @@ double ErrorOfShells(const std::vector<TransferNode>& nodes, double g) {
   const auto volume = Classified(DistanceGrid(32, 0.4), nodes, g);
   const VolumeOrders orders(
       *volume,
-      {.to_sun = kSunOverShells,
-       .sun_column_m =
-           [&](const glm::dvec3& point) { return volume->Column(point, kSunOverShells, 1e4); },
-       .sky = nullptr,
-       .lamps = nullptr,
-       .emits = false},
+      {.to_sun = kSunOverShells, .has_sun = true, .sky = nullptr, .lamps = nullptr, .emits = false},
       tests::ScaledDown(VolumeOrders::kMostCells, 4096.0));
   double squares = 0.0, sum = 0.0;
   const std::vector<ShellRay> rays = RaysThroughShells(tests::ScaledDown(16, 4));
