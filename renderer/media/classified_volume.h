@@ -10,7 +10,7 @@
 //
 // Light of all orders of scattering is solved with the mean albedo of the body, weighted by
 // scattering; what is scattered to the eye has the albedo of the point. Against traced paths the
-// light of a core and a shell of optical depth 10 is within 12 % (root mean square) for albedos of 0.3
+// light of a core and a shell of optical depth 10 is within 15 % (root mean square) for albedos of 0.3
 // and 0.95, and within 20 % for a bright core in a dark shell:
 // tests/renderer/media/classified_volume_test.cpp.
 #pragma once

@@ -283,7 +283,7 @@ TEST(CloudOptions, RefuseValuesOutOfRange) {
               HasSubstr("clouds.period is 3000; it must be a multiple of 2560"));
   EXPECT_THAT(FaultOf([] { return CloudGenusNamed("nimbus"); }),
               HasSubstr("clouds.genus is \"nimbus\"; it must be cumulus, stratocumulus, "
-                        "altocumulus or cirrus"));
+                        "altocumulus, cirrus, stratus or cirrostratus"));
 }
 
 }  // namespace
