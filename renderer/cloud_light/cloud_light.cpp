@@ -92,7 +92,7 @@ struct CloudLight::FieldLight {
         sky(solver.Sky()),
         floor(FloorBelow(of, solver.cells(), ground_altitude_m, sky)) {
     if (optics->albedo() < 1.0) ground.emplace(solver.Ground());
-    if (of.IsPlaneParallel()) {
+    if (IsPlaneParallel(of)) {
       plane_parallel = std::make_shared<const PlaneParallelCloud>(of, *optics);
       sky.up_at_top = plane_parallel->SkyAtTop().up;
       sky.down_at_base = plane_parallel->SkyAtBase().down;

@@ -415,35 +415,6 @@ CloudBox CloudField::Bounds() const {
   return {lattice_.origin_m + bricks_->bounds.low, lattice_.origin_m + bricks_->bounds.high};
 }
 
-bool CloudField::IsPlaneParallel() const {
-  if (!lattice_.is_periodic || matter_.detail.noise || bricks_->depth.empty()) return false;
-  const auto at = [&](const auto& values, std::int32_t slot, int x, int y, int z) {
-    return values[static_cast<std::size_t>(slot) * kBrick +
-                  static_cast<std::size_t>((z * kCorners + y) * kCorners + x)];
-  };
-  const auto is_even = [&](const auto& values, std::int32_t slot, std::int32_t first) {
-    if (values.empty()) return true;
-    for (int z = 0; z < kCorners; ++z) {
-      for (int y = 0; y < kCorners; ++y) {
-        for (int x = 0; x < kCorners; ++x) {
-          if (at(values, slot, x, y, z) != at(values, first, 0, 0, z)) return false;
-        }
-      }
-    }
-    return true;
-  };
-  const auto per_level = static_cast<std::size_t>(bricks_->count[0] * bricks_->count[1]);
-  for (std::size_t i = 0; i < bricks_->slot.size(); ++i) {
-    const std::int32_t slot = bricks_->slot[i], first = bricks_->slot[i - i % per_level];
-    if ((slot < 0) != (first < 0)) return false;
-    if (slot < 0) continue;
-    if (!is_even(bricks_->depth, slot, first) || !is_even(bricks_->radius_um, slot, first) ||
-        !is_even(bricks_->extinction_per_m, slot, first))
-      return false;
-  }
-  return true;
-}
-
 std::size_t CloudField::bytes() const {
   return bricks_->slot.size() * sizeof(std::int32_t) + bricks_->distance.size() +
          bricks_->depth.size() +

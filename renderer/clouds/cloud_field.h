@@ -141,8 +141,6 @@ class CloudField {
   [[nodiscard]] double top_altitude_m() const { return Bounds().high.z; }
   /// Returns the box of all bricks with cloud, within one period.
   [[nodiscard]] CloudBox Bounds() const;
-  /// Returns whether a periodic field with cloud is the same at every place.
-  [[nodiscard]] bool IsPlaneParallel() const;
   /// Returns the memory of the bricks and their index [bytes].
   [[nodiscard]] std::size_t bytes() const;
   /// Returns a hash of the shape (FNV-1a, 64 bits): equal for fields with equal bytes.

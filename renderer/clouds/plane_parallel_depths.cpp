@@ -7,6 +7,28 @@
 
 namespace alpenglow::renderer {
 
+bool IsPlaneParallel(const CloudField& field) {
+  const CloudLattice& lattice = field.lattice();
+  if (!lattice.is_periodic || field.matter().detail.noise ||
+      field.Bounds().low.z >= field.Bounds().high.z)
+    return false;
+  const auto corner = [&](int x, int y, int z) {
+    return lattice.origin_m + lattice.voxel_m * glm::dvec3(x, y, z);
+  };
+  for (int y = 0; y < lattice.voxels[1]; ++y) {
+    for (int x = 0; x < lattice.voxels[0]; ++x) {
+      for (int z = 0; z < lattice.voxels[2]; ++z) {
+        const glm::dvec3 first = corner(0, 0, z), other = corner(x, y, z);
+        const CloudField::Sample a = field.SampleAt(first), b = field.SampleAt(other);
+        if (a.depth_m != b.depth_m || a.extinction_per_m != b.extinction_per_m ||
+            field.EffectiveRadius_um(first) != field.EffectiveRadius_um(other))
+          return false;
+      }
+    }
+  }
+  return true;
+}
+
 PlaneParallelDepths::PlaneParallelDepths(const CloudField& field)
     : base_m_(field.base_altitude_m()), top_m_(field.top_altitude_m()) {
   constexpr double kPerVoxel = 16.0;

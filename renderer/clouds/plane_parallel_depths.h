@@ -8,10 +8,14 @@
 
 namespace alpenglow::renderer {
 
+/// Returns whether a periodic field has cloud and is the same at every place. It compares the corners of
+/// voxels until two differ.
+[[nodiscard]] bool IsPlaneParallel(const CloudField& field);
+
 /// Optical depths of a plane-parallel field below its top, by altitude.
 class PlaneParallelDepths {
  public:
-  /// @param field  for which IsPlaneParallel() holds. Depths are sums over a sixteenth of a voxel.
+  /// @param field  for which IsPlaneParallel holds. Depths are sums over a sixteenth of a voxel.
   explicit PlaneParallelDepths(const CloudField& field);
 
   [[nodiscard]] double base_m() const { return base_m_; }

@@ -197,9 +197,9 @@ TEST(PlaneParallelLight, ABaseAtTheGroundHasTheLightOfAHigherOne) {
 }
 
 TEST(PlaneParallelLight, OtherFieldsAreNotPlaneParallel) {
-  EXPECT_TRUE(tests::PlaneLayer(3.0).IsPlaneParallel());
-  EXPECT_TRUE(MakeCloudField(DefaultCloudOptions(CloudGenus::kStratus)).IsPlaneParallel());
-  EXPECT_FALSE(tests::SphereClouds(0.05).IsPlaneParallel());
+  EXPECT_TRUE(IsPlaneParallel(tests::PlaneLayer(3.0)));
+  EXPECT_TRUE(IsPlaneParallel(MakeCloudField(DefaultCloudOptions(CloudGenus::kStratus))));
+  EXPECT_FALSE(IsPlaneParallel(tests::SphereClouds(0.05)));
 }
 
 }  // namespace
