@@ -21,6 +21,7 @@
 #include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sphere_clouds.h"
@@ -33,10 +34,7 @@ namespace {
 constexpr std::size_t kFactorRays = 60000;
 constexpr double kUnlimited_m = std::numeric_limits<double>::infinity();
 
-glm::dvec3 SunAt35Degrees() {
-  const double e = 35.0 * kRadiansPerDegree, a = 20.0 * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
-}
+glm::dvec3 SunAt35Degrees() { return tests::DirectionAt(35.0, 20.0); }
 
 /// A field with its solution.
 struct HybridStage {

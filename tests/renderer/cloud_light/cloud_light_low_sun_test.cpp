@@ -9,6 +9,7 @@
 #include "atmosphere/math/numerics.h"
 #include "renderer/cloud_light/cloud_light.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sphere_clouds.h"
@@ -18,10 +19,7 @@ namespace {
 
 constexpr double kShade_m = 120e3;
 
-glm::dvec3 EveningSun(double elevation_deg) {
-  const double e = elevation_deg * kRadiansPerDegree, a = 20.0 * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
-}
+glm::dvec3 EveningSun(double elevation_deg) { return tests::DirectionAt(elevation_deg, 20.0); }
 
 CloudScatterers EveningDroplets() { return {CloudPhases(tests::LobeOf(0.85)), 1.0}; }
 

@@ -15,6 +15,7 @@
 #include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sphere_clouds.h"
@@ -23,10 +24,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-glm::dvec3 SunAbove(double elevation_deg) {
-  const double e = elevation_deg * kRadiansPerDegree, a = 20.0 * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
-}
+glm::dvec3 SunAbove(double elevation_deg) { return tests::DirectionAt(elevation_deg, 20.0); }
 
 CloudField SmallCumulus(std::uint32_t seed) {
   CloudOptions options;

@@ -13,6 +13,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "renderer/clouds/cloud_generator.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sphere_clouds.h"
 
@@ -22,8 +23,7 @@ namespace {
 constexpr CloudLowSunOptions kShadeOfMap{.step_m = 10.0, .farthest_m = 180e3, .full_m = 60e3};
 
 glm::dvec3 SunOfLowMap(double elevation_deg, double azimuth_deg) {
-  const double e = elevation_deg * kRadiansPerDegree, a = azimuth_deg * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+  return tests::DirectionAt(elevation_deg, azimuth_deg);
 }
 
 /// A field of cumulus, with a period of 5.12 km.

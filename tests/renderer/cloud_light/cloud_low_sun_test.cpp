@@ -14,6 +14,7 @@
 #include "renderer/cloud_light/cloud_path_tracer.h"
 #include "renderer/cloud_light/cloud_sun_depths.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/sphere_clouds.h"
 
 namespace alpenglow::renderer {
@@ -22,8 +23,7 @@ namespace {
 constexpr double kRadius_m = 6.371e6;
 
 glm::dvec3 LowSunAt(double elevation_deg, double azimuth_deg = 20.0) {
-  const double e = elevation_deg * kRadiansPerDegree, a = azimuth_deg * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+  return tests::DirectionAt(elevation_deg, azimuth_deg);
 }
 
 /// Returns the length of a straight ray between two altitudes over a sphere, by steps.

@@ -12,6 +12,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/shared_glsl/instruction_set.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sphere_clouds.h"
@@ -20,10 +21,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-glm::dvec3 SunOfMoments(double elevation_deg) {
-  const double e = elevation_deg * kRadiansPerDegree, a = 20.0 * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
-}
+glm::dvec3 SunOfMoments(double elevation_deg) { return tests::DirectionAt(elevation_deg, 20.0); }
 
 std::shared_ptr<const CloudOptics> OpticsOfMoments(const CloudField& field, double albedo = 1.0,
                                                    double g = 0.85) {

@@ -19,6 +19,7 @@
 #include "atmosphere/reference/path_tracer.h"
 #include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/sanitized.h"
@@ -32,8 +33,7 @@ constexpr double kFar_m = std::numeric_limits<double>::infinity();
 
 /// Returns the unit vector at an elevation and an azimuth from x.
 glm::dvec3 Towards(double elevation_deg, double azimuth_deg) {
-  const double e = elevation_deg * kRadiansPerDegree, a = azimuth_deg * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+  return tests::DirectionAt(elevation_deg, azimuth_deg);
 }
 
 CloudScatterers Droplets(double g = 0.85, double albedo = 1.0) {

@@ -14,6 +14,7 @@
 #include "atmosphere/math/numerics.h"
 #include "renderer/cloud_light/cloud_tracking.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/sphere_clouds.h"
 #include "tests/fixtures/thread_counts.h"
 
@@ -21,8 +22,7 @@ namespace alpenglow::renderer {
 namespace {
 
 glm::dvec3 SunAt(double elevation_deg, double azimuth_deg = 20.0) {
-  const double e = elevation_deg * kRadiansPerDegree, a = azimuth_deg * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+  return tests::DirectionAt(elevation_deg, azimuth_deg);
 }
 
 double ByQuadrature(const CloudField& field, const glm::dvec3& point, const glm::dvec3& to_sun) {

@@ -14,6 +14,7 @@
 #include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/layers/layer_field.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/quantile.h"
 #include "tests/fixtures/sanitized.h"
@@ -23,12 +24,9 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr double kLobe = 0.85;
+using tests::DirectionAt;
 
-glm::dvec3 DirectionOf(double elevation_deg, double azimuth_deg) {
-  const double e = elevation_deg * kRadiansPerDegree, a = azimuth_deg * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
-}
+constexpr double kLobe = 0.85;
 
 CloudScatterers LobeScatterers(double albedo) {
   return {CloudPhases(tests::LobeOf(kLobe)), albedo};
@@ -40,13 +38,13 @@ CloudRay RayFromOutside(int i) {
   const double mu = 0.05 + 0.95 * Halton(i, 3);
   const double azimuth_deg = 360.0 * Halton(i, 5);
   return {{700.0 * Halton(i, 7), 0.0, is_upward ? 0.0 : 2000.0},
-          DirectionOf((is_upward ? 1.0 : -1.0) * std::asin(mu) / kRadiansPerDegree, azimuth_deg)};
+          DirectionAt((is_upward ? 1.0 : -1.0) * std::asin(mu) / kRadiansPerDegree, azimuth_deg)};
 }
 
 /// Errors relative to 48 streams with the exact light of the first order, ascending.
 std::vector<double> ErrorsOfRays(double depth, double albedo, double sun_deg) {
   const CloudField field = tests::PlaneLayer(depth);
-  const glm::dvec3 to_sun = DirectionOf(sun_deg, 20.0);
+  const glm::dvec3 to_sun = DirectionAt(sun_deg, 20.0);
   const CloudLight light(field, LobeScatterers(albedo), {.to_sun = to_sun});
   const LayerStack stack({{depth, albedo, LobeMoments(kLobe)}}, 0.0, tests::ScaledDown(48, 32));
   const LayerField truth = LayerField::UnderSun(stack, to_sun.z);
@@ -82,7 +80,7 @@ TEST(PlaneParallelLight, SunlightIsThatOf48Streams) {
 TEST(PlaneParallelLight, FluxesAreThoseOf48Streams) {
   for (const double depth : {0.5, 5.0, 30.0}) {
     const CloudField field = tests::PlaneLayer(depth);
-    const glm::dvec3 to_sun = DirectionOf(35.0, 20.0);
+    const glm::dvec3 to_sun = DirectionAt(35.0, 20.0);
     const CloudLight light(field, LobeScatterers(1.0), {.to_sun = to_sun});
     const LayerStack stack({{depth, 1.0, LobeMoments(kLobe)}}, 0.0, tests::ScaledDown(48, 24));
     const LayerFluxes at_base = LayerField::UnderSun(stack, to_sun.z).Fluxes(depth);
@@ -91,14 +89,14 @@ TEST(PlaneParallelLight, FluxesAreThoseOf48Streams) {
     // The goal of layers: 0.1 % of the incident flux.
     EXPECT_NEAR(ground.direct + ground.diffuse, at_base.direct + at_base.down, 1e-3 * to_sun.z);
     EXPECT_NEAR(ground.sky, of_sky.down, 1e-3 * kPi);
-    // Nothing is absorbed. The mean transmittance of the map of sunlight is right to 1e-4.
+    // The layer absorbs nothing. The mean transmittance of the map of sunlight is right to 1e-4.
     EXPECT_NEAR(ground.direct + ground.diffuse + light.sun_moments().up_at_top, to_sun.z, 1e-4);
   }
 }
 
 TEST(PlaneParallelLight, PartsOfARayAreTheWholeRay) {
   const CloudField field = tests::PlaneLayer(6.0);
-  const CloudLight light(field, LobeScatterers(0.95), {.to_sun = DirectionOf(35.0, 20.0)});
+  const CloudLight light(field, LobeScatterers(0.95), {.to_sun = DirectionAt(35.0, 20.0)});
   for (int i = 1; i <= 40; ++i) {
     const CloudRay ray = RayFromOutside(i);
     const double begin_m = 1000.0 / std::abs(ray.direction.z);
@@ -144,26 +142,26 @@ TEST(PlaneParallelLight, StratusHasTheLightOfTracedPaths) {
   CloudOptions options = DefaultCloudOptions(CloudGenus::kStratus);
   options.optical_depth = 5.0;
   const CloudField field = MakeCloudField(options);
-  ExpectTracedPaths(field, DirectionOf(35.0, 20.0),
-                    {{{0.0, 0.0, 0.0}, DirectionOf(70.0, 100.0)},
-                     {{0.0, 0.0, 0.0}, DirectionOf(25.0, 40.0)},
-                     {{0.0, 0.0, 0.0}, DirectionOf(25.0, 200.0)},
-                     {{0.0, 0.0, 2000.0}, DirectionOf(-50.0, 60.0)},
-                     {{0.0, 0.0, 2000.0}, DirectionOf(-20.0, 210.0)},
-                     {{0.0, 0.0, 800.0}, DirectionOf(10.0, 90.0)},
-                     {{0.0, 0.0, 800.0}, DirectionOf(-40.0, 90.0)}},
+  ExpectTracedPaths(field, DirectionAt(35.0, 20.0),
+                    {{{0.0, 0.0, 0.0}, DirectionAt(70.0, 100.0)},
+                     {{0.0, 0.0, 0.0}, DirectionAt(25.0, 40.0)},
+                     {{0.0, 0.0, 0.0}, DirectionAt(25.0, 200.0)},
+                     {{0.0, 0.0, 2000.0}, DirectionAt(-50.0, 60.0)},
+                     {{0.0, 0.0, 2000.0}, DirectionAt(-20.0, 210.0)},
+                     {{0.0, 0.0, 800.0}, DirectionAt(10.0, 90.0)},
+                     {{0.0, 0.0, 800.0}, DirectionAt(-40.0, 90.0)}},
                     0.03);
 }
 
 TEST(PlaneParallelLight, ASunBelowTheHorizonLightsTheBase) {
   CloudOptions options = DefaultCloudOptions(CloudGenus::kCirrostratus);
   const CloudField field = MakeCloudField(options);
-  const CloudLight light(field, LobeScatterers(1.0), {.to_sun = DirectionOf(-2.0, 20.0)});
+  const CloudLight light(field, LobeScatterers(1.0), {.to_sun = DirectionAt(-2.0, 20.0)});
   const CloudPathTracer tracer(
       field, LobeScatterers(1.0),
-      {.to_sun = DirectionOf(-2.0, 20.0), .low_sun = light.sun().low_sun()});
-  for (const CloudRay& ray : {CloudRay{{0.0, 0.0, 0.0}, DirectionOf(60.0, 60.0)},
-                              CloudRay{{0.0, 0.0, 0.0}, DirectionOf(30.0, 150.0)}}) {
+      {.to_sun = DirectionAt(-2.0, 20.0), .low_sun = light.sun().low_sun()});
+  for (const CloudRay& ray : {CloudRay{{0.0, 0.0, 0.0}, DirectionAt(60.0, 60.0)},
+                              CloudRay{{0.0, 0.0, 0.0}, DirectionAt(30.0, 150.0)}}) {
     const CloudRadiance traced =
         tracer.Radiance(ray, CloudPathOptions{.paths = tests::ScaledDown<std::size_t>(8000, 160)});
     // The beam is bent within the layer, which is deeper than a twentieth of the way to its base.
@@ -184,10 +182,10 @@ TEST(PlaneParallelLight, ABaseAtTheGroundHasTheLightOfAHigherOne) {
     by_method.method = method;
     by_method.paths.paths = tests::ScaledDown(4000, 400);
     const CloudLight light(field, LobeScatterers(1.0),
-                           {.to_sun = DirectionOf(35.0, 20.0),
+                           {.to_sun = DirectionAt(35.0, 20.0),
                             .ground_altitude_m = std::min(0.0, field.base_altitude_m())},
                            by_method);
-    return light.Radiance({{0.0, 0.0, base_m - 30.0}, DirectionOf(50.0, 80.0)}).sun;
+    return light.Radiance({{0.0, 0.0, base_m - 30.0}, DirectionAt(50.0, 80.0)}).sun;
   };
   for (const CloudLightMethod method : {CloudLightMethod::kFast, CloudLightMethod::kHybrid}) {
     const double low = light_at(0.0, method), high = light_at(1000.0, method);
@@ -198,7 +196,9 @@ TEST(PlaneParallelLight, ABaseAtTheGroundHasTheLightOfAHigherOne) {
 
 TEST(PlaneParallelLight, OtherFieldsAreNotPlaneParallel) {
   EXPECT_TRUE(IsPlaneParallel(tests::PlaneLayer(3.0)));
-  EXPECT_TRUE(IsPlaneParallel(MakeCloudField(DefaultCloudOptions(CloudGenus::kStratus))));
+  const CloudOptions stratus = DefaultCloudOptions(CloudGenus::kStratus);
+  EXPECT_TRUE(IsPlaneParallel(MakeCloudField(stratus)));
+  EXPECT_TRUE(IsPlaneParallel(MakeCloudField(stratus, 12345.6))) << "moved by the wind";
   EXPECT_FALSE(IsPlaneParallel(tests::SphereClouds(0.05)));
 }
 

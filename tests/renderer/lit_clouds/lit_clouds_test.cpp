@@ -12,6 +12,7 @@
 #include "atmosphere/math/numerics.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/lit_clouds/air_reflection.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/lamp_night.h"
 #include "tests/fixtures/media.h"
@@ -131,8 +132,7 @@ TEST(LitClouds, LightOnTheGroundIsThatOfTheDeckAbove) {
 }
 
 glm::dvec3 SunOverClouds(double elevation_deg) {
-  const double e = elevation_deg * kRadiansPerDegree, a = 20.0 * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+  return tests::DirectionAt(elevation_deg, 20.0);
 }
 
 /// The spheres 4 km higher.

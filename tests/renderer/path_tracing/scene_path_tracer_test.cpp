@@ -21,6 +21,7 @@
 #include "renderer/path_tracing/traceable_scene.h"
 #include "renderer/picture/prepared_scene.h"
 #include "renderer/picture/render.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
@@ -40,8 +41,7 @@ constexpr std::size_t kFewestPaths = 32 * kPathsPerBatch;
 
 /// Returns the unit vector at an elevation and an azimuth from x.
 glm::dvec3 SkyPoint(double elevation_deg, double azimuth_deg) {
-  const double e = elevation_deg * kRadiansPerDegree, a = azimuth_deg * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+  return tests::DirectionAt(elevation_deg, azimuth_deg);
 }
 
 /// Air of three bands over a planet so large that it is flat.

@@ -11,6 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/elevation/mesh.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/rough_land.h"
 
 namespace alpenglow::renderer {
@@ -19,8 +20,7 @@ namespace {
 constexpr double kSunRadius_rad = 0.00465;
 
 glm::dvec3 SunAtDegrees(double elevation, double azimuth_from_east) {
-  const double e = elevation * kRadiansPerDegree, a = azimuth_from_east * kRadiansPerDegree;
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
+  return tests::DirectionAt(elevation, azimuth_from_east);
 }
 
 /// Heights of a function of (x, y) over a square around the origin.
