@@ -303,8 +303,9 @@ class CloudMomentSolver::Grid {
   using DirectionValues = std::vector<std::vector<float>>;
   void FillSources(const CloudHarmonics* moments, const Source* source,
                    DirectionValues& values) const;
-  /// Finds the slopes of the source along tracks, or along all axes of a body.
+  /// Finds the slope of the source along the tracks of a direction, in a field.
   void FindSlopesAlong(std::size_t direction, TrackRoom& room) const;
+  /// Finds this slope and those along all axes, in a body.
   void FindSlopes(std::size_t direction, TrackRoom& room) const;
   /// Returns the sum of the radiances with which tracks leave.
   /// @param leaving  see CloudTrackWork.
@@ -396,7 +397,11 @@ double CloudMomentSolver::Grid::Follow(std::size_t direction, float entering, bo
   for (std::size_t cell = 0; cell < cells_->full(); ++cell) {
     source[cells_->Lane(cell)] = values[cell];
   }
-  cells_->is_body() ? FindSlopes(direction, room) : FindSlopesAlong(direction, room);
+  if (cells_->is_body()) {
+    FindSlopes(direction, room);
+  } else {
+    FindSlopesAlong(direction, room);
+  }
   const CloudCells::Runs& runs = everywhere ? cells_->all_runs() : cells_->full_runs();
   std::array<const float*, 3> slopes_per_m{};
   if (cells_->is_body()) {

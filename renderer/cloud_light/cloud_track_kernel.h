@@ -37,7 +37,7 @@ struct CloudTrackStep {
   int level;
   float length_m;  // of the segment
   float offset_m;  // of its middle from the middle of the cell, along the track
-  /// The same along x, y and z, less the mean over the segments of a level, so that a cell emits
+  /// These offsets along x, y and z have the mean 0 over the segments of a level, so that a cell emits
   /// what the source in its middle says.
   std::array<float, 3> offsets_m;
 };

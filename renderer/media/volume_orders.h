@@ -28,12 +28,12 @@
 //     optical depth of 10, also for mean cosines of -0.5 and -0.7, and within 9 % for 50;
 //   - a white body in uniform light is invisible within 1 %, for optical depths up to 10^5;
 //   - the middles of faces of a deep white box have the light of a deep plane medium within 8 %;
-//   - deep white balls send back the light of the sun within 6 %, but not at the right places: their
-//     middles are 16 % too dark, and edges of boxes are dark over a tenth of their length.
+//   - deep white balls send back the light of the sun within 6 %.
+//
+// The middles of deep balls are too dark, and edges of deep boxes are dark over a tenth of their length.
 //
 // Below a mean cosine of -0.3 moments are those of the whole phase function: the peak is backward,
-// and its moments above degree 3 are lost. At -0.9 the light of a plume of depth 10 has an error of
-// 28 % and is 8 % too bright.
+// and its moments above degree 3 are lost. Below -0.7 the light has no error bound.
 #pragma once
 
 #include <cstddef>

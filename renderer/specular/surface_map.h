@@ -30,8 +30,8 @@ class SurfaceMap {
   ///     and finite.
   SurfaceMap(std::span<const PhotonBeam> beams, double radius_m);
 
-  /// Returns the irradiance of the surface at a point on it. With n photons in the disk, its standard
-  /// error is 1.2 / sqrt(n) of it, or less where the photons are evenly spread.
+  /// Returns the irradiance of the surface at a point on it. The noise of n random photons in the disk
+  /// would be sqrt(4 / (3 n)) of it; photons of a sequence have less.
   [[nodiscard]] double Irradiance(const glm::dvec3& point) const;
 
  private:
