@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/base/error.h"
+#include "renderer/clouds/periodic_index.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -16,11 +17,6 @@ namespace {
 
 // Samples along each side of a cell.
 constexpr int kMostSamples = 4;
-
-int Wrapped(int index, int count) {
-  const int rest = index % count;
-  return rest < 0 ? rest + count : rest;
-}
 
 /// Calls visit(x, y, z) for a place and all places within `reach` of it.
 template <typename Visit>
@@ -123,8 +119,8 @@ void CloudCells::Fill(const Content& content) {
 
 std::ptrdiff_t CloudCells::WrappedPlace(int x, int y, int z) const {
   if (is_periodic_) {
-    x = Wrapped(x, count_[0]);
-    y = Wrapped(y, count_[1]);
+    x = PeriodicIndex(x, count_[0]);
+    y = PeriodicIndex(y, count_[1]);
   }
   const bool is_inside =
       x >= 0 && y >= 0 && z >= 0 && x < count_[0] && y < count_[1] && z < count_[2];
@@ -256,7 +252,7 @@ CloudCells::Mixture CloudCells::Around(const glm::dvec3& point) const {
     const int a = static_cast<int>(axis), count = count_[axis];
     const bool wraps = is_periodic_ && axis < 2;
     int first = static_cast<int>(low[a]);
-    if (wraps && (first < 0 || first >= count)) first = Wrapped(first, count);
+    if (wraps) first = PeriodicIndex(first, count);
     int second = first + 1;
     if (wraps) {
       second = second < count ? second : 0;

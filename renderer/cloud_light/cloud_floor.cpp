@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "renderer/clouds/periodic_index.h"
+
 namespace alpenglow::renderer {
 namespace {
 
@@ -19,8 +21,7 @@ struct FloorLine {
   int count;
 
   [[nodiscard]] std::size_t At(int i) const {
-    const int rest = i % count;
-    return first + stride * static_cast<std::size_t>(rest < 0 ? rest + count : rest);
+    return first + stride * static_cast<std::size_t>(PeriodicIndex(i, count));
   }
 };
 
@@ -61,13 +62,10 @@ void Spread(const CloudColumns& columns, double deviation_m, FloorValues& values
 double LinearAt(const CloudColumns& columns, const FloorValues& values, const glm::dvec2& at) {
   const auto [x_count, y_count] = columns.count;
   const double x = std::floor(at.x), y = std::floor(at.y);
-  const auto wrapped = [](double whole, int count) {
-    return static_cast<std::size_t>(whole - count * std::floor(whole / count)) %
-           static_cast<std::size_t>(count);
-  };
-  const auto value = [&](double column, double line) {
-    return static_cast<double>(values[wrapped(line, y_count) * static_cast<std::size_t>(x_count) +
-                                      wrapped(column, x_count)]);
+  const auto value = [&, x_count = x_count, y_count = y_count](double column, double line) {
+    const auto row = static_cast<std::size_t>(PeriodicIndex(line, y_count));
+    return static_cast<double>(values[row * static_cast<std::size_t>(x_count) +
+                                      static_cast<std::size_t>(PeriodicIndex(column, x_count))]);
   };
   return std::lerp(std::lerp(value(x, y), value(x + 1.0, y), at.x - x),
                    std::lerp(value(x, y + 1.0), value(x + 1.0, y + 1.0), at.x - x), at.y - y);

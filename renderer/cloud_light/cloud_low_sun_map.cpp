@@ -11,6 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/numerics.h"
+#include "renderer/clouds/periodic_index.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -26,17 +27,6 @@ constexpr double kRowsInLayer = 40.0, kCellDepth = 0.2, kMostCells = 2.0;
 // Refraction lifts the sun by 0.010 at the horizon, and twice as much for a cloud behind it.
 constexpr double kHiddenBelowHorizon = 0.03;
 constexpr double kReachOfHorizon = 0.8, kMostReach_m = 4e5;
-
-/// Returns the quotient rounded down, for count > 0.
-template <typename Number>
-Number FloorDivided(Number value, Number count) {
-  return value / count - (value % count < 0 ? 1 : 0);
-}
-
-template <typename Number>
-Number Wrapped(Number value, Number count) {
-  return value - count * FloorDivided(value, count);
-}
 
 // Deeper beams are stored as 2^-31, and end.
 constexpr float kOpaque = 21.5F;
@@ -118,8 +108,9 @@ void CloudLowSunMap::MakeSlices() {
   const double period_m = cell_m_ * static_cast<double>(columns_);
   for (int i = 0; i < rounds_ * planes_; ++i) {
     const int round = first_round_ + i / planes_;
-    const int plane = i % planes_ + planes_ * FloorDivided(round, chains_);
-    const double at_m = plane * distance_m_, slope = Wrapped(round, chains_) * round_;
+    const int of_period = PeriodicIndex(round, chains_);
+    const int plane = i % planes_ + planes_ * ((round - of_period) / chains_);
+    const double at_m = plane * distance_m_, slope = of_period * round_;
     const double height_m = at_m * (slope + 0.5 * at_m * per_radius);
     const auto row = static_cast<std::int64_t>(std::floor((low_m - height_m) / row_m_));
     const double shift_m = at_m * sun_.azimuth()[across_];
@@ -136,13 +127,13 @@ void CloudLowSunMap::Fill(int chain, std::size_t first, std::size_t end) {
   const auto rows = static_cast<std::int64_t>(rows_);
   std::int64_t next_row = std::numeric_limits<std::int64_t>::max() / 2;
   for (int round = rounds_; round-- > 0;) {
-    if (Wrapped(first_round_ + round, chains_) != chain) continue;
+    if (PeriodicIndex(first_round_ + round, chains_) != chain) continue;
     for (int plane = planes_; plane-- > 0;) {
       const auto number = static_cast<std::size_t>(round * planes_ + plane);
       const Slice& slice = slices_[number];
       for (std::int64_t row = 0; row < rows; ++row) {
         const std::int64_t l = slice.row + row;
-        float* of_row = &depth[static_cast<std::size_t>(Wrapped(l, rows)) * columns];
+        float* of_row = &depth[static_cast<std::size_t>(PeriodicIndex(l, rows)) * columns];
         if (l < next_row || l >= next_row + rows) std::fill_n(of_row, columns, 0.0F);
         AddArcs(number, static_cast<std::size_t>(row), {of_row, columns}, first);
         std::uint16_t* coded =
@@ -187,7 +178,8 @@ float CloudLowSunMap::OnSlice(std::size_t number, const glm::dvec3& point, Mean 
       std::clamp((point.z - slice.low_m) / row_m_, 0.0, static_cast<double>(rows_ - 1));
   const auto row = std::min(static_cast<std::size_t>(v), rows_ - 2);
   const auto columns = static_cast<std::int64_t>(columns_);
-  const auto west = static_cast<std::size_t>(Wrapped(static_cast<std::int64_t>(column), columns));
+  const auto west =
+      static_cast<std::size_t>(PeriodicIndex(static_cast<std::int64_t>(column), columns));
   const std::size_t east = west + 1 < columns_ ? west + 1 : 0;
   const auto share = static_cast<float>(u - column);
   const auto read = [&](std::uint16_t value) {
@@ -203,7 +195,7 @@ float CloudLowSunMap::OnSlice(std::size_t number, const glm::dvec3& point, Mean 
 float CloudLowSunMap::RestFrom(const CloudBeam& beam, std::int64_t plane, double distance_m,
                                Mean mean) const {
   const glm::dvec3 point = beam.At(distance_m);
-  const auto number = static_cast<int>(Wrapped(plane, static_cast<std::int64_t>(planes_)));
+  const auto number = static_cast<int>(PeriodicIndex(plane, static_cast<std::int64_t>(planes_)));
   const double at =
       (beam.SlopeAt(distance_m) - number * distance_m_ * sun_.per_radius()) / round_ - first_round_;
   const double round = std::clamp(std::floor(at), 0.0, static_cast<double>(rounds_ - 2));

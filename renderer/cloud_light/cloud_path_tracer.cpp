@@ -13,6 +13,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase.h"
+#include "renderer/clouds/periodic_index.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -357,7 +358,7 @@ class CloudPathTracer::PhotonCounter {
     for (int axis = 1; axis >= 0; --axis) {
       const auto count = columns_[static_cast<std::size_t>(axis)];
       double at = std::floor((point[axis] - origin_[axis]) * per_column_[axis]);
-      if (is_periodic_) at -= count * std::floor(at / count);
+      if (is_periodic_) at = PeriodicIndex(at, count);
       if (!(at >= 0.0 && at < count)) return;
       column = column * static_cast<std::size_t>(count) + static_cast<std::size_t>(at);
     }

@@ -16,6 +16,7 @@
 #include "atmosphere/math/numerics.h"
 #include "renderer/cloud_light/cloud_tracking.h"
 #include "renderer/clouds/cloud_line.h"
+#include "renderer/clouds/periodic_index.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -54,8 +55,7 @@ std::optional<MapNeighbours> NeighboursOf(double at, int count, bool is_periodic
   const double cell = std::floor(at);
   const auto share = static_cast<float>(at - cell);
   if (is_periodic) {
-    const double wrapped = cell - count * std::floor(cell / count);
-    const int node = std::min(static_cast<int>(wrapped), count - 1);
+    const int node = PeriodicIndex(cell, count);
     return MapNeighbours{{node, node + 1 < count ? node + 1 : 0}, share};
   }
   if (!(cell >= 0.0 && cell < count - 1)) return std::nullopt;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "renderer/clouds/cloud_cover.h"
+#include "renderer/clouds/periodic_index.h"
 #include "renderer/clouds/periodic_map.h"
 #include "renderer/clouds/portable_functions.h"
 #include "renderer/clouds/shape_noise.h"
@@ -221,8 +222,7 @@ class FibreIndex {
   }
   [[nodiscard]] std::size_t Index(const std::array<int, 3>& cell) const {
     const auto wrapped = [&](std::size_t axis) {
-      const int rest = cell[axis] % count_[axis];
-      return static_cast<std::size_t>(rest < 0 ? rest + count_[axis] : rest);
+      return static_cast<std::size_t>(PeriodicIndex(cell[axis], count_[axis]));
     };
     return (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(count_[1]) + wrapped(1)) *
                static_cast<std::size_t>(count_[0]) +
@@ -309,8 +309,7 @@ class GroundBelow {
 
  private:
   [[nodiscard]] std::size_t Index(double place) const {
-    const int rest = static_cast<int>(std::floor(place / 40.0)) % side_;
-    return static_cast<std::size_t>(rest < 0 ? rest + side_ : rest);
+    return static_cast<std::size_t>(PeriodicIndex(std::floor(place / 40.0), side_));
   }
 
   int side_;

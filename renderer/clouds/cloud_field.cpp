@@ -14,6 +14,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/numerics.h"
+#include "renderer/clouds/periodic_index.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -125,7 +126,7 @@ class DistanceSweep {
     int least = line[static_cast<std::size_t>(i)];
     for (int away = 1; away < std::min(least, length); ++away) {
       for (int j : {i - away, i + away}) {
-        if (wraps) j = (j + length) % length;
+        if (wraps) j = PeriodicIndex(j, length);
         if (j < 0 || j >= length) continue;
         least =
             std::min(least, std::max(away, static_cast<int>(line[static_cast<std::size_t>(j)])));
@@ -181,7 +182,7 @@ class DistanceGrid {
         const auto distance = static_cast<float>(away * step * (away * step));
         if (distance >= least) break;
         for (int j : {i - away, i + away}) {
-          if (wraps_ && axis < 2) j = (j + length) % length;
+          if (wraps_ && axis < 2) j = PeriodicIndex(j, length);
           if (j < 0 || j >= length) continue;
           least = std::min(least, line[static_cast<std::size_t>(j)] + distance);
         }

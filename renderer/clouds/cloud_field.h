@@ -33,6 +33,7 @@
 
 #include "renderer/clouds/cloud_noise.h"
 #include "renderer/clouds/cloud_physics.h"
+#include "renderer/clouds/periodic_index.h"
 
 namespace alpenglow::renderer {
 
@@ -304,8 +305,7 @@ inline CloudField::Cell CloudField::CellIn(const glm::dvec3& at) const {
     cell.voxel[a] = voxel;
     if (voxel >= 0 && voxel < lattice_.voxels[a]) continue;
     cell.is_inside = cell.is_inside && lattice_.is_periodic && axis < 2;
-    const std::int32_t rest = voxel % lattice_.voxels[a];
-    cell.voxel[a] = rest < 0 ? rest + lattice_.voxels[a] : rest;
+    cell.voxel[a] = PeriodicIndex(voxel, lattice_.voxels[a]);
   }
   return cell;
 }

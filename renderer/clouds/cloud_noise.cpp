@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "renderer/clouds/periodic_index.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -19,12 +20,6 @@ std::int32_t WholePart(double value) {
   return truncated - (value < truncated ? 1 : 0);
 }
 
-/// Returns a number in [0, period).
-std::int32_t WrappedCell(std::int32_t number, int period) {
-  const std::int32_t rest = number % period;
-  return rest < 0 ? rest + period : rest;
-}
-
 double HashFraction(std::uint32_t hash) { return static_cast<double>(hash) / 4294967296.0; }
 
 /// Returns the lowest ten bits as a number in [0, 1).
@@ -33,8 +28,8 @@ double TenBits(std::uint32_t hash) { return (hash & 1023U) / 1024.0; }
 /// Returns the hash of a lattice point; all axes repeat, or only x and y.
 std::uint32_t PointHash(const std::array<std::int32_t, 3>& point, int period, bool wraps_z,
                         std::uint32_t seed) {
-  return LatticeHash3(WrappedCell(point[0], period), WrappedCell(point[1], period),
-                      wraps_z ? WrappedCell(point[2], period) : point[2], seed);
+  return LatticeHash3(PeriodicIndex(point[0], period), PeriodicIndex(point[1], period),
+                      wraps_z ? PeriodicIndex(point[2], period) : point[2], seed);
 }
 
 double BlendedValues(const glm::dvec3& cells, int period, bool wraps_z, std::uint32_t seed) {
@@ -99,10 +94,10 @@ class BumpLattice {
     for (std::int32_t z = middle[2] - 1; z <= middle[2] + 1; ++z) {
       for (std::int32_t y = middle[1] - 1; y <= middle[1] + 1; ++y) {
         const std::int32_t row =
-            (WrappedCell(z, period_) * period_ + WrappedCell(y, period_)) * period_;
+            (PeriodicIndex(z, period_) * period_ + PeriodicIndex(y, period_)) * period_;
         for (std::int32_t x = middle[0] - 1; x <= middle[0] + 1; ++x) {
           const glm::dvec3& point =
-              points_[static_cast<std::size_t>(row + WrappedCell(x, period_))];
+              points_[static_cast<std::size_t>(row + PeriodicIndex(x, period_))];
           const double dy = y + point.y - first.y, dz = z + point.z - first.z;
           const double dx = x + point.x - first.x, rest = dy * dy + dz * dz;
           for (std::size_t i = 0; i < count; ++i) {
@@ -199,7 +194,7 @@ CellDistances DistancesInCells(const glm::dvec2& cells, double time, int period,
   const std::int32_t before = WholePart(time);
   const double share = shared::NoiseFade(time - before);
   const auto place = [&](std::int32_t x, std::int32_t y, std::uint32_t axis) {
-    const std::int32_t east = WrappedCell(x, period), north = WrappedCell(y, period);
+    const std::int32_t east = PeriodicIndex(x, period), north = PeriodicIndex(y, period);
     const double from = HashFraction(LatticeHash3(east, north, before, seed + axis));
     const double to = HashFraction(LatticeHash3(east, north, before + 1, seed + axis));
     return 0.5 + kJitter * (from + share * (to - from) - 0.5);

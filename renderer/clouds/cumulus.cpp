@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "renderer/clouds/cloud_cover.h"
+#include "renderer/clouds/periodic_index.h"
 #include "renderer/clouds/periodic_map.h"
 #include "renderer/clouds/portable_functions.h"
 #include "renderer/clouds/shape_noise.h"
@@ -223,11 +224,8 @@ class GroundGrid {
 
  private:
   [[nodiscard]] std::size_t Index(int x, int y) const {
-    const auto wrapped = [&](int cell) {
-      const int rest = cell % side_;
-      return static_cast<std::size_t>(rest < 0 ? rest + side_ : rest);
-    };
-    return wrapped(y) * static_cast<std::size_t>(side_) + wrapped(x);
+    return static_cast<std::size_t>(PeriodicIndex(y, side_)) * static_cast<std::size_t>(side_) +
+           static_cast<std::size_t>(PeriodicIndex(x, side_));
   }
 
   int side_;
@@ -382,9 +380,7 @@ class SphereUnion {
   }
 
   [[nodiscard]] std::size_t Wrapped(int number) const {
-    if (number >= 0 && number < side_) return static_cast<std::size_t>(number);
-    const int rest = number % side_;
-    return static_cast<std::size_t>(rest < 0 ? rest + side_ : rest);
+    return static_cast<std::size_t>(PeriodicIndex(number, side_));
   }
   [[nodiscard]] std::size_t Row(int layer, std::size_t y) const {
     return (static_cast<std::size_t>(layer) * static_cast<std::size_t>(side_) + y) *

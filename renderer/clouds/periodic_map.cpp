@@ -8,6 +8,7 @@
 
 #include "atmosphere/base/error.h"
 #include "renderer/clouds/cloud_noise.h"
+#include "renderer/clouds/periodic_index.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -46,12 +47,9 @@ PeriodicMap::PeriodicMap(int side, double period_m,
 }
 
 double PeriodicMap::Sample(std::int32_t x, std::int32_t y) const {
-  const auto wrapped = [&](std::int32_t number) {
-    if (number >= 0 && number < side_) return static_cast<std::size_t>(number);
-    const std::int32_t rest = number % side_;
-    return static_cast<std::size_t>(rest < 0 ? rest + side_ : rest);
-  };
-  return static_cast<double>(values_[wrapped(y) * static_cast<std::size_t>(side_) + wrapped(x)]);
+  const auto row = static_cast<std::size_t>(PeriodicIndex(y, side_));
+  const auto column = static_cast<std::size_t>(PeriodicIndex(x, side_));
+  return static_cast<double>(values_[row * static_cast<std::size_t>(side_) + column]);
 }
 
 double PeriodicMap::At(const glm::dvec2& point_m) const {
