@@ -163,6 +163,11 @@ struct CloudSurroundings {
   double wavelength_nm = 550.0;
   double ground_albedo = 0.0;  ///< of a Lambertian ground, in [0, 1]
   double ground_m = 0.0;       ///< altitude of the ground, in [-1e5, CloudField::base_m()]
+  /// Radius of the planet, in [1e5, 1e9]. Beams of a sun below 3 degrees curve over it, in the flat
+  /// frame: the sun is higher by 1/radius for each metre towards it. Its direction is that over the
+  /// origin. Clouds further away than 60 km shade others less and less, and none beyond 180 km do. The
+  /// ground does not hide the sun.
+  double planet_radius_m = 6.371e6;
 };
 
 /// Light that clouds scatter into a ray, and what they leave of the light behind it.
@@ -249,7 +254,7 @@ class CloudLight {
   /// Solves for the light, on all processors. This is slow compared with all other functions.
   /// Throws InputError, too, for a field without memory for its light.
   /// @param field    its copy is kept.
-  /// @param to_sun   direction to the sun, at least 3 degrees above the horizontal plane.
+  /// @param to_sun   direction to the sun, at most 4 degrees below the horizontal plane.
   /// @param options  see there.
   CloudLight(const CloudField& field, const Direction& to_sun,
              const CloudLightOptions& options = {});
@@ -274,6 +279,7 @@ class CloudLight {
   [[nodiscard]] double SunTransmittance(const LocalPoint& point) const;
 
   /// Returns the fluxes of columns of equal size, the first ones along the east, on all processors.
+  /// Throws InputError, too, for a sun below 3 degrees.
   /// Means over a field of cumulus are within 0.03 of those of CloudPaths at a sun of 37 degrees
   /// (asserted by clouds_api_test and cloud_light_fluxes_test); in other fields up to 8 % of the
   /// light upwards was missing.
@@ -308,7 +314,7 @@ class CloudPaths {
  public:
   /// Keeps a copy of the field.
   /// @param field         see there.
-  /// @param to_sun        direction to the sun, at least 3 degrees above the horizontal plane.
+  /// @param to_sun        direction to the sun, at most 4 degrees below the horizontal plane.
   /// @param surroundings  see there.
   CloudPaths(const CloudField& field, const Direction& to_sun,
              const CloudSurroundings& surroundings = {});
@@ -318,7 +324,8 @@ class CloudPaths {
   [[nodiscard]] TracedCloudRadiance Radiance(const CloudRay& ray,
                                              const CloudPathOptions& options = {}) const;
 
-  /// Returns the fluxes of columns of equal size. Light may enter an open field from the side.
+  /// Returns the fluxes of columns of equal size. Light may enter an open field from the side. Throws
+  /// InputError, too, for a sun below 3 degrees.
   /// @param columns  numbers to the east and to the north, each in [1, 4096] and at most 262144
   ///   together.
   /// @param options  see there.

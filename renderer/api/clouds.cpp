@@ -17,12 +17,13 @@
 #include "renderer/cloud_light/cloud_light.h"
 #include "renderer/cloud_light/cloud_light_fluxes.h"
 #include "renderer/cloud_light/cloud_path_tracer.h"
-#include "renderer/cloud_light/cloud_sun_map.h"
+#include "renderer/cloud_light/cloud_sun_depths.h"
 #include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/cloud_phase/ice_phase.h"
 #include "renderer/clouds/cloud_field.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/clouds/cloud_options.h"
+#include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/scene/cloud_file.h"
 #include "renderer/scene/scene_clouds.h"
 
@@ -216,19 +217,36 @@ renderer::CloudPhases PhasesOf(CloudParticles particles, double g, double wavele
   return renderer::CloudPhases({.kind = atmosphere::PhaseKind::kHenyeyGreenstein, .g = g});
 }
 
-glm::dvec3 CheckedSun(const Direction& to_sun) {
-  const glm::dvec3 unit = UnitVectorOf(to_sun);
+void RequireElevation(const glm::dvec3& unit, double lowest_deg, std::string_view name) {
   const double elevation_deg = std::asin(std::clamp(unit.z, -1.0, 1.0)) / kRadiansPerDegree;
   // Angles that come from degrees may be lower by rounding.
-  RequireInRange(std::round(1e9 * elevation_deg) / 1e9, renderer::kLowestCloudSun_deg, 90.0,
-                 "the elevation of to_sun [degrees]");
+  RequireInRange(std::round(1e9 * elevation_deg) / 1e9, lowest_deg, 90.0, name);
+}
+
+glm::dvec3 CheckedSun(const Direction& to_sun) {
+  const glm::dvec3 unit = UnitVectorOf(to_sun);
+  RequireElevation(unit, renderer::kLowestCloudLight_deg, "the elevation of to_sun [degrees]");
   return unit;
+}
+
+/// Fluxes are relative to that of the sun through a plane.
+void RequireSunOfFluxes(const glm::dvec3& to_sun) {
+  RequireElevation(to_sun, renderer::kLowestCloudSun_deg,
+                   "the elevation of to_sun for fluxes [degrees]");
+}
+
+/// Returns the beams of pictures (renderer/lit_clouds).
+renderer::CloudLowSunOptions LowSunOver(const CloudSurroundings& surroundings) {
+  return {.planet_radius_m = surroundings.planet_radius_m,
+          .farthest_m = renderer::kFarthestCloudShade_m,
+          .full_m = renderer::kFullCloudShade_m};
 }
 
 const CloudSurroundings& Checked(const CloudSurroundings& surroundings, double base_m) {
   RequireInRange(surroundings.wavelength_nm, 300.0, 1000.0, "surroundings.wavelength_nm");
   RequireInRange(surroundings.ground_albedo, 0.0, 1.0, "surroundings.ground_albedo");
   RequireInRange(surroundings.ground_m, -1e5, base_m, "surroundings.ground_m");
+  RequireInRange(surroundings.planet_radius_m, 1e5, 1e9, "surroundings.planet_radius_m");
   return surroundings;
 }
 
@@ -271,20 +289,31 @@ double ShareWithCloud(const renderer::CloudField& field) {
   return std::min(1.0, static_cast<double>(field.bytes()) / (kBytesOfBrick * bricks));
 }
 
-/// Returns the memory that the light of a field may need [bytes]. Solving takes some 20 vectors of
-/// moments of full cells; a node of the map takes up to 2 bytes for each of its levels.
-double LightBytes(const renderer::CloudField& field, double cell_m, double map_cell_m,
-                  double sun_z) {
-  constexpr double kClearCell = 9.0, kFullCell = 2000.0, kNode = 12.0, kCellsAlongBeam = 4.0;
+/// Returns the memory that the map of sunlight may need [bytes]. A node of that of a high sun takes up
+/// to 2 bytes for each of its levels.
+double SunMapBytes(const renderer::CloudField& field, const glm::dvec3& to_sun,
+                   const renderer::CloudLowSunOptions& low_sun) {
+  if (renderer::IsLowCloudSun(to_sun)) {
+    return renderer::CloudLowSunMap::BytesFor(field, renderer::CloudLowSun(field, to_sun, low_sun));
+  }
+  constexpr double kNode = 12.0, kCellsAlongBeam = 4.0;
+  const double cell_m = SunMapFor(field).cell_m;
   const glm::dvec3 size_m = field.lattice().size_m();
   const double depth_m = field.top_altitude_m() - field.base_altitude_m();
-  const auto columns = [&](double side_m) {
-    return std::max(1.0, size_m.x / side_m) * std::max(1.0, size_m.y / side_m);
-  };
-  const double cells = columns(cell_m) * std::max(6.0, depth_m / cell_m);
-  const double levels = depth_m / (kCellsAlongBeam * map_cell_m * sun_z);
-  return cells * (kClearCell + kFullCell * ShareWithCloud(field)) +
-         columns(map_cell_m) * (kNode + 2.0 * levels);
+  const double levels = depth_m / (kCellsAlongBeam * cell_m * to_sun.z);
+  return std::max(1.0, size_m.x / cell_m) * std::max(1.0, size_m.y / cell_m) *
+         (kNode + 2.0 * levels);
+}
+
+/// Returns the memory that the moments of a field may need [bytes]. Solving takes some 20 vectors of
+/// moments of full cells.
+double MomentBytes(const renderer::CloudField& field, double cell_m) {
+  constexpr double kClearCell = 9.0, kFullCell = 2000.0;
+  const glm::dvec3 size_m = field.lattice().size_m();
+  const double depth_m = field.top_altitude_m() - field.base_altitude_m();
+  const double columns = std::max(1.0, size_m.x / cell_m) * std::max(1.0, size_m.y / cell_m);
+  return columns * std::max(6.0, depth_m / cell_m) *
+         (kClearCell + kFullCell * ShareWithCloud(field));
 }
 
 CloudRayLight LightOf(const renderer::CloudRayLight& light) {
@@ -362,12 +391,13 @@ struct CloudLight::State {
   renderer::CloudLight light;
 
   void RequireMemoryFor(const glm::dvec3& to_sun) const {
-    RequireMemoryFor(field->field, cell_m, to_sun);
+    RequireMemoryFor(field->field, cell_m, to_sun, LowSunOver(surroundings));
   }
   static void RequireMemoryFor(const renderer::CloudField& field, double cell_m,
-                               const glm::dvec3& to_sun) {
+                               const glm::dvec3& to_sun,
+                               const renderer::CloudLowSunOptions& low_sun) {
     const glm::dvec3 size_m = field.lattice().size_m();
-    RequireMemory(LightBytes(field, cell_m, SunMapFor(field).cell_m, to_sun.z),
+    RequireMemory(MomentBytes(field, cell_m) + SunMapBytes(field, to_sun, low_sun),
                   fmt::format("light with options.cell_m {} in a field of {} x {} m", cell_m,
                               size_m.x, size_m.y));
   }
@@ -379,8 +409,9 @@ CloudLight::CloudLight(const CloudField& field, const Direction& to_sun,
   const CloudSurroundings& around = Checked(options.surroundings, clouds.base_altitude_m());
   RequireInRange(options.cell_m, 20.0, 2500.0, "options.cell_m");
   const glm::dvec3 sun = CheckedSun(to_sun);
-  State::RequireMemoryFor(clouds, options.cell_m, sun);
+  State::RequireMemoryFor(clouds, options.cell_m, sun, LowSunOver(around));
   renderer::CloudLightOptions with;
+  with.low_sun = LowSunOver(around);
   with.moments.cell_m = options.cell_m;
   with.sun_map = SunMapFor(clouds);
   if (!options.has_fitted_factor) with.factor.rays = 0;
@@ -424,8 +455,9 @@ CloudRadiance CloudLight::Radiance(const CloudRay& ray) const {
   const double to_ground_m = (checked.origin.z - around.ground_m) / down;
   const renderer::CloudRayLight light = state_->light.Radiance(checked, to_ground_m);
   const renderer::CloudGroundIrradiance& irradiance = state_->light.ground_irradiance();
+  const glm::dvec3 ground = checked.At(to_ground_m);
   const double direct =
-      state_->light.sun().to_sun().z * state_->light.SunTransmittance(checked.At(to_ground_m));
+      std::max(state_->light.sun().ToSunAt(ground).z, 0.0) * state_->light.SunTransmittance(ground);
   const double reflected = light.scaled_transmittance * around.ground_albedo / kPi;
   return {light.sun + reflected * (direct + irradiance.diffuse),
           light.sky + reflected * irradiance.sky,
@@ -439,6 +471,7 @@ double CloudLight::SunTransmittance(const LocalPoint& point) const {
 std::vector<CloudFluxes> CloudLight::Fluxes(const std::array<int, 2>& columns,
                                             int rays_per_column) const {
   CheckColumns(columns, 4096.0 * 4096.0);
+  RequireSunOfFluxes(state_->light.sun().to_sun());
   RequireInRange(rays_per_column, 1.0, 1e7, "rays_per_column");
   std::vector<CloudFluxes> fluxes;
   for (const renderer::CloudLightFluxes& column :
@@ -452,7 +485,9 @@ std::size_t CloudLight::bytes() const { return state_->light.bytes(); }
 
 struct CloudPaths::State {
   std::shared_ptr<const CloudField::State> field;  // the tracer refers to it
+  glm::dvec3 to_sun;
   double ground_m;
+  std::shared_ptr<const renderer::CloudLowSun> low_sun;  // likewise; null for a high sun
   renderer::CloudPathTracer tracer;
 };
 
@@ -460,10 +495,15 @@ CloudPaths::CloudPaths(const CloudField& field, const Direction& to_sun,
                        const CloudSurroundings& surroundings) {
   const renderer::CloudField& clouds = field.state_->field;
   const CloudSurroundings& around = Checked(surroundings, clouds.base_altitude_m());
+  const glm::dvec3 sun = CheckedSun(to_sun);
+  std::shared_ptr<const renderer::CloudLowSun> low_sun;
+  if (renderer::IsLowCloudSun(sun))
+    low_sun = std::make_shared<const renderer::CloudLowSun>(clouds, sun, LowSunOver(around));
   renderer::CloudPathTracer tracer(
       clouds, {PhasesOf(field.state_->particles, field.state_->g, around.wavelength_nm)},
-      {CheckedSun(to_sun), around.ground_albedo, around.ground_m});
-  state_ = std::make_shared<const State>(State{field.state_, around.ground_m, std::move(tracer)});
+      {sun, around.ground_albedo, around.ground_m, low_sun.get()});
+  state_ = std::make_shared<const State>(
+      State{field.state_, sun, around.ground_m, low_sun, std::move(tracer)});
 }
 
 TracedCloudRadiance CloudPaths::Radiance(const CloudRay& ray,
@@ -477,6 +517,7 @@ TracedCloudRadiance CloudPaths::Radiance(const CloudRay& ray,
 CloudColumns CloudPaths::Fluxes(const std::array<int, 2>& columns,
                                 const CloudPathOptions& options) const {
   CheckColumns(columns, 262144.0);
+  RequireSunOfFluxes(state_->to_sun);
   const renderer::CloudFluxes found =
       state_->tracer.Fluxes(renderer::CloudSource::kSun, {OptionsOf(options), columns});
   CloudColumns all{.column = {}, .mean = FluxesOf(found.mean), .photons = found.photons};

@@ -27,6 +27,8 @@ constexpr double kRowsInLayer = 40.0, kCellDepth = 0.2, kMostCells = 2.0;
 // Refraction lifts the sun by 0.010 at the horizon, and twice as much for a cloud behind it.
 constexpr double kHiddenBelowHorizon = 0.03;
 constexpr double kReachOfHorizon = 0.8, kMostReach_m = 4e5;
+// Shorter periods count as several.
+constexpr double kLeastPeriod_m = 1000.0;
 
 // Deeper beams are stored as 2^-31, and end.
 constexpr float kOpaque = 21.5F;
@@ -49,7 +51,7 @@ float Decoded(std::uint16_t value) {
 }  // namespace
 
 CloudLowSunMap::CloudLowSunMap(const CloudField& field, const CloudLowSun& sun,
-                               const CloudLowSunMapOptions& options)
+                               const CloudLowSunMapOptions& options, Unmade)
     : field_(field), sun_(sun) {
   RequireInRange(options.cell_m, 5.0, 1000.0, "the cell of a map of low sunlight in clouds [m]");
   RequireInRange(options.plane_m, 50.0, 2000.0,
@@ -60,9 +62,10 @@ CloudLowSunMap::CloudLowSunMap(const CloudField& field, const CloudLowSun& sun,
   across_ = 1 - along_;
   const glm::dvec2 size_m(field.lattice().size_m());
   const double straight = std::abs(azimuth[along_]);
-  planes_ =
-      static_cast<int>(std::max(1.0, std::round(size_m[along_] / straight / options.plane_m)));
-  distance_m_ = size_m[along_] / planes_ / straight;
+  const double period_m =
+      size_m[along_] * std::max(1.0, std::ceil(kLeastPeriod_m / size_m[along_])) / straight;
+  planes_ = static_cast<int>(std::max(1.0, std::round(period_m / options.plane_m)));
+  distance_m_ = period_m / planes_;
   const double wider =
       std::clamp(kCellDepth / (options.cell_m * field.largest_extinction_per_m()), 1.0, kMostCells);
   const double cells = size_m[across_] * straight / (wider * options.cell_m);
@@ -71,6 +74,20 @@ CloudLowSunMap::CloudLowSunMap(const CloudField& field, const CloudLowSun& sun,
   const double layer_m = std::max(1.0, field.top_altitude_m() - field.base_altitude_m());
   row_m_ = wider * std::min(options.cell_m, layer_m / kRowsInLayer);
   ChooseRounds();
+}
+
+double CloudLowSunMap::BytesFor(const CloudField& field, const CloudLowSun& sun,
+                                const CloudLowSunMapOptions& options) {
+  const CloudLowSunMap map(field, sun, options, Unmade{});
+  const double slices = static_cast<double>(map.rounds_) * map.planes_;
+  return slices * (sizeof(Slice) + sizeof(std::uint16_t) * static_cast<double>(map.rows_) *
+                                       static_cast<double>(map.columns_));
+}
+
+CloudLowSunMap::CloudLowSunMap(const CloudField& field, const CloudLowSun& sun,
+                               const CloudLowSunMapOptions& options)
+    : CloudLowSunMap(field, sun, options, Unmade{}) {
+  if (rounds_ == 0) return;
   MakeSlices();
   value_.resize(slices_.size() * rows_ * columns_);
   const std::size_t blocks = (columns_ + kColumnsAtOnce - 1) / kColumnsAtOnce;
@@ -97,14 +114,17 @@ void CloudLowSunMap::ChooseRounds() {
       std::sqrt(entering_ * entering_ + 2.0 * per_radius * (top_m - field_.base_altitude_m()));
   first_round_ = static_cast<int>(std::floor(flattest_ / round_)) - chains_;
   rounds_ = static_cast<int>(std::floor(leaving / round_)) + 2 - first_round_;
+  const double steepest = std::max(-first_round_, first_round_ + rounds_) * round_;
+  margin_m_ = distance_m_ * steepest;
+  rows_ =
+      3 + static_cast<std::size_t>((field_.top_altitude_m() + margin_m_ - LowestRow_m()) / row_m_);
 }
+
+double CloudLowSunMap::LowestRow_m() const { return field_.base_altitude_m() - margin_m_; }
 
 void CloudLowSunMap::MakeSlices() {
   const double per_radius = sun_.per_radius();
-  const double steepest = std::max(-first_round_, first_round_ + rounds_) * round_;
-  const double margin_m = distance_m_ * steepest;
-  const double low_m = field_.base_altitude_m() - margin_m;
-  rows_ = 3 + static_cast<std::size_t>((field_.top_altitude_m() + margin_m - low_m) / row_m_);
+  const double low_m = LowestRow_m();
   const double period_m = cell_m_ * static_cast<double>(columns_);
   for (int i = 0; i < rounds_ * planes_; ++i) {
     const int round = first_round_ + i / planes_;

@@ -24,7 +24,8 @@
 // whose light depends on the medium without forward peak, with less than half of the extinction: it
 // is linear in the root of T. Both follow a beam in the field to the first plane that is 150 m away
 // or more, in steps of 5 m times 1.15^n up to 40 m. TransmittanceAround(), for shafts far from the
-// eye, is linear between the planes behind and ahead of a point instead.
+// eye, is linear between the planes behind and ahead of a point instead. Fields with a period below
+// 1 km count as several periods: a round for each of them would be many alike.
 //
 // The map reaches around the place for 0.8 times the distance at which an eye on the ground can see
 // the field. Beams of points further away, and those that enter the layer steeper than all these,
@@ -57,6 +58,11 @@ class CloudLowSunMap {
   CloudLowSunMap(const CloudField& field, const CloudLowSun& sun,
                  const CloudLowSunMapOptions& options = {});
 
+  /// Returns the memory that the map of a field takes [bytes], without making it. Throws InputError as
+  /// the constructor does.
+  [[nodiscard]] static double BytesFor(const CloudField& field, const CloudLowSun& sun,
+                                       const CloudLowSunMapOptions& options = {});
+
   [[nodiscard]] const CloudLowSun& sun() const { return sun_; }
 
   /// Returns the optical depth from a point in a cloud to the sun, at most CloudLowSun::kDeepest. At
@@ -82,7 +88,9 @@ class CloudLowSunMap {
   }
 
   /// Returns the memory of the map [bytes].
-  [[nodiscard]] std::size_t bytes() const { return value_.size() * sizeof(std::uint16_t); }
+  [[nodiscard]] std::size_t bytes() const {
+    return slices_.size() * sizeof(Slice) + value_.size() * sizeof(std::uint16_t);
+  }
   /// Returns a hash of the map (FNV-1a, 64 bits).
   [[nodiscard]] std::uint64_t hash() const;
 
@@ -95,8 +103,13 @@ class CloudLowSunMap {
     double low_m;      // altitude of the lowest row of beams
     std::int64_t row;  // its l
   };
+  struct Unmade {};
+  /// Chooses the planes, beams and rounds of a map without their values.
+  CloudLowSunMap(const CloudField& field, const CloudLowSun& sun,
+                 const CloudLowSunMapOptions& options, Unmade);
   void ChooseRounds();
   void MakeSlices();
+  [[nodiscard]] double LowestRow_m() const;
   /// Follows the beams of one slope a and some columns from the last slice to the first one.
   void Fill(int chain, std::size_t first, std::size_t end);
   /// Adds the optical depths from a slice to the next one to those of a row of beams.
@@ -126,6 +139,7 @@ class CloudLowSunMap {
   std::size_t columns_ = 0, rows_ = 0;
   double flattest_ = 1.0, steepest_ = 0.0;  // slopes of points within reach: none in an open field
   double hidden_ = -1.0;                    // slope where the planet hides the sun
+  double margin_m_ = 0.0;                   // of rows above and below the layer
   double entering_ = 0.0;                   // the steepest beam that enters the layer
   double round_ = 1.0;                      // difference of slopes of rounds
   int first_round_ = 0, rounds_ = 0;

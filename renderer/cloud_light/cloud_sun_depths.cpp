@@ -11,20 +11,17 @@
 #include "atmosphere/math/numerics.h"
 
 namespace alpenglow::renderer {
-namespace {
 
-bool IsLow(const glm::dvec3& to_sun) {
+bool IsLowCloudSun(const glm::dvec3& to_sun) {
   return to_sun.z < std::sin(kLowestCloudSun_deg * kRadiansPerDegree);
 }
-
-}  // namespace
 
 CloudSunDepths::CloudSunDepths(const CloudField& field, const glm::dvec3& to_sun,
                                const CloudSunMapOptions& map_options,
                                const CloudLowSunOptions& low_options,
                                const CloudLowSunMapOptions& low_map_options)
     : field_(&field), sun_([&]() -> std::variant<CloudSunMap, CloudLowSunMap> {
-        if (!IsLow(to_sun)) return CloudSunMap(field, to_sun, map_options);
+        if (!IsLowCloudSun(to_sun)) return CloudSunMap(field, to_sun, map_options);
         return CloudLowSunMap(field, CloudLowSun(field, to_sun, low_options), low_map_options);
       }()) {}
 

@@ -15,6 +15,9 @@
 
 namespace alpenglow::renderer {
 
+/// Returns whether a sun has the beams of cloud_low_sun.h: below kLowestCloudSun_deg.
+[[nodiscard]] bool IsLowCloudSun(const glm::dvec3& to_sun);
+
 /// Optical depths to a sun of any elevation from kLowestCloudLight_deg on. Immutable; safe to use from
 /// many threads. The field must outlive it.
 class CloudSunDepths {

@@ -236,6 +236,57 @@ TEST(ApiClouds, RadianceHasTheMeanOfPathsWithSkyAndGround) {
   RecordProperty("ground", std::to_string(ground.found / ground.traced - 1.0));
 }
 
+TEST(ApiClouds, LowSunsHaveTheMeanLightOfPaths) {
+  for (const bool is_periodic : {true, false}) {
+    const CloudField field(Ball(is_periodic));
+    for (const double elevation_deg : {1.0, -0.8}) {
+      const Direction low = DirectionFromAngles(elevation_deg, 130.0);
+      const CloudLightOptions options{.surroundings = {.ground_albedo = 0.5},
+                                      .has_fitted_factor = false};
+      const CloudLight light(field, low, options);
+      const CloudPaths paths(field, low, options.surroundings);
+      ComparedMeans sun;
+      for (const CloudRay& ray : RaysThroughBall(tests::ScaledDown(24, 8)))
+        sun.Add(light.Radiance(ray).sun, paths.Radiance(ray).sun);
+      // Cells of 80 m are coarse for a ball of 500 m; there is no fitted factor.
+      EXPECT_TRUE(sun.AgreeWithin(0.12)) << elevation_deg << ", periodic " << is_periodic << ": "
+                                         << sun.found << ", traced " << sun.traced;
+      EXPECT_LT(sun.scatter, 0.06 * sun.traced) << "the test must be able to fail";
+      RecordProperty("sun " + std::to_string(elevation_deg) + (is_periodic ? " periodic" : " open"),
+                     std::to_string(sun.found / sun.traced - 1.0));
+    }
+  }
+}
+
+TEST(ApiClouds, LightIsContinuousBelowThreeDegrees) {
+  const CloudField field(Ball(true));
+  const CloudLight high(field, DirectionFromAngles(3.0, 130.0), Unfitted());
+  const CloudLight low = high.WithSun(DirectionFromAngles(2.999, 130.0));
+  double above = 0.0, below = 0.0;
+  for (const CloudRay& ray : RaysThroughBall(400)) {
+    above += high.Radiance(ray).sun;
+    below += low.Radiance(ray).sun;
+  }
+  EXPECT_NEAR(below, above, 0.03 * above) << "the bound of the light below";
+}
+
+TEST(ApiClouds, TheSunIsLowerFarBehindThePlace) {
+  CloudGrid grid = Ball(false);
+  std::fill(grid.extinction_per_m.begin(), grid.extinction_per_m.end(), 0.0F);
+  grid.extinction_per_m[0] = 1e-3F;
+  const CloudLight light(CloudField(grid), DirectionFromAngles(1.0, 90.0),
+                         {.surroundings = {.ground_albedo = 1.0}, .has_fitted_factor = false});
+  const auto on_ground = [&](double east_m) {
+    return light.Radiance({{east_m, 0.0, 10.0}, {.up = -1.0}}).sun;
+  };
+  const double sine = std::sin(1.0 * atmosphere::kRadiansPerDegree);
+  EXPECT_NEAR(on_ground(-2000.0), sine / atmosphere::kPi, 0.03 * sine);
+  EXPECT_NEAR(on_ground(-63710.0) / on_ground(-2000.0), (sine - 0.01) / (sine - 2000.0 / 6.371e6),
+              0.02)
+      << "the sun is lower by 0.01 after a hundredth of the radius";
+  EXPECT_EQ(on_ground(-150e3), 0.0) << "the sun has set";
+}
+
 TEST(ApiClouds, FluxesAreThoseOfPathsOverBrightGround) {
   const CloudField field(Ball(true));
   const CloudLight light(field, kSun, {.surroundings = {.ground_albedo = 0.5}});
@@ -434,8 +485,8 @@ TEST(ApiClouds, InvalidSunsAndSurroundingsAreRefusedByName) {
                 }),
                 HasSubstr(fault));
   };
-  expect(DirectionFromAngles(2.0, 0.0), {},
-         "elevation of to_sun [degrees] is 2; it must lie in [3, 90]");
+  expect(DirectionFromAngles(-4.5, 0.0), {},
+         "elevation of to_sun [degrees] is -4.5; it must lie in [-4, 90]");
   expect(DirectionFromAngles(-40.0, 0.0), {}, "elevation of to_sun [degrees] is -40");
   expect({kNan, 0.0, 1.0}, {}, "a direction is (east nan");
   expect({0.0, 0.0, 0.0}, {}, "longer than 0");
@@ -445,8 +496,24 @@ TEST(ApiClouds, InvalidSunsAndSurroundingsAreRefusedByName) {
   expect(kSun, {.surroundings = {}, .cell_m = 5.0},
          "options.cell_m is 5; it must lie in [20, 2500]");
   const CloudLight light(field, kSun, Unfitted());
-  EXPECT_THAT(tests::FaultOf([&] { return light.WithSun({1.0, 0.0, 0.0}); }), HasSubstr("is 0;"));
-  EXPECT_NO_THROW((void)light.WithSun(DirectionFromAngles(3.0, 45.0))) << "the lowest sun";
+  expect(kSun, {.surroundings = {.planet_radius_m = 10.0}},
+         "surroundings.planet_radius_m is 10; it must lie in [100000, 1000000000]");
+  EXPECT_THAT(tests::FaultOf([&] {
+                return light.WithSun({0.0, 0.0, -1.0});
+              }),
+              HasSubstr("is -90;"));
+  EXPECT_NO_THROW((void)light.WithSun(DirectionFromAngles(-4.0, 45.0))) << "the lowest sun";
+}
+
+TEST(ApiClouds, FluxesOfALowSunAreRefused) {
+  const CloudField field(Ball(true));
+  for (const double elevation_deg : {2.0, -1.0}) {
+    const Direction low = DirectionFromAngles(elevation_deg, 0.0);
+    EXPECT_THAT(tests::FaultOf([&] { return CloudLight(field, low, Unfitted()).Fluxes(); }),
+                HasSubstr("for fluxes [degrees] is "));
+    EXPECT_THAT(tests::FaultOf([&] { return CloudPaths(field, low).Fluxes(); }),
+                HasSubstr("it must lie in [3, 90]"));
+  }
 }
 
 TEST(ApiClouds, InvalidRaysAndNumbersAreRefusedByName) {
