@@ -119,12 +119,35 @@ struct CloudLight::FieldLight {
 };
 
 struct CloudLight::SunLight {
-  SunLight(const FieldLight& light, const glm::dvec3& to_sun)
-      : depths(*light.field, to_sun, light.options.sun_map, light.options.low_sun),
-        moments(light.solver.Sun(depths)),
+  /// @param to_sun  nothing: no sun is solved for.
+  SunLight(const FieldLight& light, const std::optional<glm::dvec3>& to_sun)
+      : depths(DepthsOf(light, to_sun)),
+        moments(to_sun ? light.solver.Sun(depths) : light.solver.None()),
         floor(FloorBelow(*light.field, light.solver.cells(), light.ground_altitude_m, moments)),
         gather(*light.field, *light.optics, depths, moments.moments, light.sky.moments,
-               light.ground ? &light.ground->moments : nullptr, light.options.gather) {
+               light.ground ? &light.ground->moments : nullptr, light.options.gather),
+        layer(light.plane_parallel) {
+    if (to_sun) FindSunlight(light);
+    const bool is_periodic = light.field->lattice().is_periodic;
+    const double repeated = 1.0 / (1.0 - light.ground_albedo * light.ReturnedToGround());
+    if (to_sun) {
+      irradiance.direct =
+          std::max(to_sun->z, 0.0) * (is_periodic ? depths.MeanTransmittance() : 1.0);
+    }
+    const double sun = irradiance.direct + (is_periodic ? moments.down_at_base : 0.0);
+    irradiance.diffuse = repeated * sun - irradiance.direct;
+    irradiance.sky = repeated * (is_periodic ? light.sky.down_at_base : kPi);
+    irradiance.ground = repeated * kPi * light.ReturnedToGround();
+  }
+  SunLight(const SunLight&) = delete;
+  SunLight& operator=(const SunLight&) = delete;
+
+  static CloudSunDepths DepthsOf(const FieldLight& light, const std::optional<glm::dvec3>& to_sun) {
+    if (!to_sun) return CloudSunDepths(*light.field);
+    return {*light.field, *to_sun, light.options.sun_map, light.options.low_sun};
+  }
+  /// Finds the light of a plane-parallel field or the factor of any other one.
+  void FindSunlight(const FieldLight& light) {
     if (light.plane_parallel) {
       plane_parallel.emplace(light.plane_parallel, depths);
       moments.up_at_top = plane_parallel->UpAtTop();
@@ -137,28 +160,23 @@ struct CloudLight::SunLight {
       const CloudLattice& lattice = light.field->lattice();
       factor = WithFlux(factor, gather,
                         {*light.field, glm::dvec2(lattice.origin_m), glm::dvec2(lattice.size_m()),
-                         to_sun, light.optics->phase()},
+                         depths.to_sun(), light.optics->phase()},
                         moments.up_at_top + moments.down_at_base);
     }
-    const bool is_periodic = light.field->lattice().is_periodic;
-    const double repeated = 1.0 / (1.0 - light.ground_albedo * light.ReturnedToGround());
-    irradiance.direct = std::max(to_sun.z, 0.0) * (is_periodic ? depths.MeanTransmittance() : 1.0);
-    const double sun = irradiance.direct + (is_periodic ? moments.down_at_base : 0.0);
-    irradiance.diffuse = repeated * sun - irradiance.direct;
-    irradiance.sky = repeated * (is_periodic ? light.sky.down_at_base : kPi);
-    irradiance.ground = repeated * kPi * light.ReturnedToGround();
   }
-  SunLight(const SunLight&) = delete;
-  SunLight& operator=(const SunLight&) = delete;
 
   /// Returns the light of the fast method.
   [[nodiscard]] CloudRayParts Along(const CloudRay& ray, double length_m) const {
-    return plane_parallel ? plane_parallel->Along(ray, length_m) : gather.Along(ray, length_m);
+    if (plane_parallel) return plane_parallel->Along(ray, length_m);
+    if (layer) return layer->UnlitAlong(ray, length_m);
+    CloudRayParts parts = gather.Along(ray, length_m);
+    if (depths.IsUnlit()) parts.first = 0.0;
+    return parts;
   }
   /// Returns the factor for rays that begin after some collisions.
   [[nodiscard]] CloudFactor FactorAfter(const FieldLight& light, int collisions) const {
     CloudFactorOptions options = light.options.factor;
-    if (options.rays == 0) return {};
+    if (options.rays == 0 || depths.IsUnlit()) return {};
     options.collisions = collisions;
     const CloudPathTracer tracer(*light.field, light.scatterers,
                                  {.to_sun = depths.to_sun(),
@@ -178,7 +196,8 @@ struct CloudLight::SunLight {
   CloudSunDepths depths;
   SolvedCloudMoments moments;
   CloudFloor floor;
-  CloudGather gather;  // refers to depths and moments
+  CloudGather gather;                               // refers to depths and moments
+  std::shared_ptr<const PlaneParallelCloud> layer;  // null for other fields
   std::optional<PlaneParallelSun> plane_parallel;
   CloudFactor factor;
   CloudGroundIrradiance irradiance;
@@ -194,9 +213,25 @@ CloudLight::CloudLight(const CloudField& field, const CloudScatterers& scatterer
   *this = WithMethod(options.method);
 }
 
+CloudLight CloudLight::Unlit(const CloudField& field, const CloudScatterers& scatterers,
+                             const CloudSurroundings& surroundings,
+                             const CloudLightOptions& options) {
+  CloudLight light;
+  light.field_light_ = std::make_shared<const FieldLight>(
+      field, scatterers, CheckedSurroundings(field, scatterers, surroundings), options);
+  light.sun_light_ = std::make_shared<const SunLight>(*light.field_light_, std::nullopt);
+  return light.WithMethod(options.method);
+}
+
 CloudLight CloudLight::WithSun(const glm::dvec3& to_sun) const {
   CloudLight moved = *this;
   moved.sun_light_ = std::make_shared<const SunLight>(*field_light_, to_sun);
+  return moved.WithMethod(method_);
+}
+
+CloudLight CloudLight::WithoutSun() const {
+  CloudLight moved = *this;
+  moved.sun_light_ = std::make_shared<const SunLight>(*field_light_, std::nullopt);
   return moved.WithMethod(method_);
 }
 
@@ -232,7 +267,8 @@ CloudRayLights CloudLight::RadianceByBoth(const CloudRay& ray, double length_m) 
   };
   const CloudRayLight fast = over_ground({sun_light_->factor.Sun(parts), parts.sky, parts.ground});
   if (method_ == CloudLightMethod::kFast || parts.transmittance >= 1.0) return {fast, fast};
-  const CloudScattered traced = paths_->Radiance(ray, length_m, SeedOf(ray, length_m));
+  CloudScattered traced = paths_->Radiance(ray, length_m, SeedOf(ray, length_m));
+  if (sun().IsUnlit()) traced.sun = {};
   return {fast, over_ground(BesidePeak(traced, ray, parts.scaled_transmittance))};
 }
 

@@ -100,8 +100,16 @@ class CloudLight {
   CloudLight(const CloudField& field, const CloudScatterers& scatterers,
              const CloudSurroundings& surroundings, const CloudLightOptions& options = {});
 
-  /// Returns the light of the same field under another sun. It shares the light of sky and ground.
+  /// Solves only for the light of sky and ground: there is no sunlight. Throws InputError likewise.
+  /// @param surroundings  with any direction to the sun.
+  [[nodiscard]] static CloudLight Unlit(const CloudField& field, const CloudScatterers& scatterers,
+                                        const CloudSurroundings& surroundings,
+                                        const CloudLightOptions& options = {});
+
+  /// Returns the light of the same field under another sun, or under none. It shares the light of sky
+  /// and ground.
   [[nodiscard]] CloudLight WithSun(const glm::dvec3& to_sun) const;
+  [[nodiscard]] CloudLight WithoutSun() const;
 
   /// Returns the light of the same solution by another method. It shares all tables. Throws InputError
   /// for a number of paths out of range.
@@ -150,6 +158,7 @@ class CloudLight {
  private:
   struct FieldLight;
   struct SunLight;
+  CloudLight() = default;
 
   std::shared_ptr<const FieldLight> field_light_;
   std::shared_ptr<const SunLight> sun_light_;

@@ -597,6 +597,11 @@ SolvedCloudMoments CloudMomentSolver::Sun(const CloudSunDepths& to_sun) const {
   return solved;
 }
 
+SolvedCloudMoments CloudMomentSolver::None() const {
+  const std::shared_ptr<const CloudCells>& of = grids_.back()->cells();
+  return {CloudMoments(of, std::vector<CloudHarmonics>(of->size()))};
+}
+
 SolvedCloudMoments CloudMomentSolver::Sky() const {
   return Light({.entering = [](const glm::dvec3& travel) { return travel.z < 0.0 ? 1.0 : 0.0; },
                 .incident = nullptr});

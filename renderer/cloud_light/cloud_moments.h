@@ -114,6 +114,8 @@ class CloudMomentSolver {
   [[nodiscard]] SolvedCloudMoments Sky() const;
   /// Unit radiance from all directions below.
   [[nodiscard]] SolvedCloudMoments Ground() const;
+  /// Returns no light, of which no sweep is made.
+  [[nodiscard]] SolvedCloudMoments None() const;
   /// Light that is given in the frame of the cells.
   [[nodiscard]] SolvedCloudMoments Light(const CloudIllumination& light) const;
 

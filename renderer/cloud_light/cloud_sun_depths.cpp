@@ -3,12 +3,14 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "renderer/cloud_light/cloud_tracking.h"
 
 namespace alpenglow::renderer {
 
@@ -20,22 +22,46 @@ CloudSunDepths::CloudSunDepths(const CloudField& field, const glm::dvec3& to_sun
                                const CloudSunMapOptions& map_options,
                                const CloudLowSunOptions& low_options,
                                const CloudLowSunMapOptions& low_map_options)
-    : field_(&field), sun_([&]() -> std::variant<CloudSunMap, CloudLowSunMap> {
+    : field_(&field), sun_([&]() -> std::variant<Unlit, CloudSunMap, CloudLowSunMap> {
         if (!IsLowCloudSun(to_sun)) return CloudSunMap(field, to_sun, map_options);
         return CloudLowSunMap(field, CloudLowSun(field, to_sun, low_options), low_map_options);
       }()) {}
 
+const glm::dvec3& CloudSunDepths::to_sun() const {
+  static const glm::dvec3 kVertical(0.0, 0.0, 1.0);
+  if (IsUnlit()) return kVertical;
+  return map() ? map()->to_sun() : low_sun()->to_sun();
+}
+
 double CloudSunDepths::OpticalDepth(const glm::dvec3& point) const {
+  if (IsUnlit()) return kNoLight;
   return map() ? OpticalDepthToSun(*field_, *map(), point) : low_map()->OpticalDepth(point);
 }
 
 double CloudSunDepths::Transmittance(const glm::dvec3& point) const {
+  if (IsUnlit()) return 1.0;
   return map() ? map()->Transmittance(point) : low_map()->Transmittance(point);
 }
 
+double CloudSunDepths::TransmittanceAround(const glm::dvec3& point) const {
+  if (IsUnlit()) return 1.0;
+  return map() ? map()->TransmittanceAround(point) : low_map()->TransmittanceAround(point);
+}
+
 double CloudSunDepths::MeanTransmittance(double altitude_m) const {
-  if (map()) return altitude_m < field_->top_altitude_m() ? map()->MeanTransmittance() : 1.0;
-  return MeanPowerOfTransmittance(altitude_m, 1.0);
+  if (low_map()) return MeanPowerOfTransmittance(altitude_m, 1.0);
+  if (altitude_m >= field_->top_altitude_m()) return 1.0;
+  return map() ? map()->MeanTransmittance()
+               : MeanPowerOfTransmittance(field_->base_altitude_m(), 1.0);
+}
+
+double CloudSunDepths::BeamLeft(const glm::dvec3& point) const {
+  constexpr double kStep_m = 20.0;
+  if (map()) return map()->Transmittance(point);
+  if (low_map()) return low_map()->TransmittanceAsAtPlace(point);
+  const double length_m = std::max(field_->top_altitude_m() - point.z, 0.0);
+  return std::exp(
+      -CloudDepths(CloudTracker(*field_, false), {point, to_sun()}, length_m, kStep_m).depth());
 }
 
 double CloudSunDepths::MeanPowerOfTransmittance(double altitude_m, double exponent) const {
@@ -46,14 +72,14 @@ double CloudSunDepths::MeanPowerOfTransmittance(double altitude_m, double expone
     const glm::dvec2 place =
         glm::dvec2(lattice.origin_m) +
         glm::dvec2(lattice.size_m()) * glm::dvec2(Halton(i + 1, 2), Halton(i + 1, 3));
-    const glm::dvec3 point(place, altitude_m);
-    const double of_beam =
-        map() ? map()->Transmittance(point) : low_map()->TransmittanceAsAtPlace(point);
-    left[static_cast<std::size_t>(i)] = std::pow(of_beam, exponent);
+    left[static_cast<std::size_t>(i)] = std::pow(BeamLeft({place, altitude_m}), exponent);
   });
   return std::accumulate(left.begin(), left.end(), 0.0) / kBeams;
 }
 
-std::size_t CloudSunDepths::bytes() const { return map() ? map()->bytes() : low_map()->bytes(); }
+std::size_t CloudSunDepths::bytes() const {
+  if (IsUnlit()) return 0;
+  return map() ? map()->bytes() : low_map()->bytes();
+}
 
 }  // namespace alpenglow::renderer

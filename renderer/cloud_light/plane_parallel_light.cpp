@@ -90,6 +90,11 @@ CloudRayParts PlaneParallelCloud::Unlit(const CloudRay& ray, const Crossing& cro
   return parts;
 }
 
+CloudRayParts PlaneParallelCloud::UnlitAlong(const CloudRay& ray, double length_m) const {
+  const auto crossing = CrossingOf(ray, length_m);
+  return crossing ? Unlit(ray, *crossing) : CloudRayParts{};
+}
+
 PlaneParallelSun::PlaneParallelSun(std::shared_ptr<const PlaneParallelCloud> cloud,
                                    const CloudSunDepths& to_sun)
     : cloud_(std::move(cloud)),

@@ -56,6 +56,8 @@ class PlaneParallelCloud {
 
   /// Returns the light of sky and ground, the transmittances and the mean distance.
   [[nodiscard]] CloudRayParts Unlit(const CloudRay& ray, const Crossing& crossing) const;
+  /// Returns the same along a ray.
+  [[nodiscard]] CloudRayParts UnlitAlong(const CloudRay& ray, double length_m) const;
   /// Returns mean fluxes for unit radiance of the sky.
   [[nodiscard]] LayerFluxes SkyAtTop() const { return sky_.Fluxes(0.0); }
   [[nodiscard]] LayerFluxes SkyAtBase() const { return sky_.Fluxes(depths_.whole()); }

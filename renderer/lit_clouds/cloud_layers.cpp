@@ -17,12 +17,8 @@ constexpr double kPhase_nm = 550.0;
 /// Sun and moon of two frames.
 constexpr std::size_t kKept = 4;
 
-/// Returns the direction of the beam in a field: that of the light. No cloud sees a light below the
-/// lowest one; one in the zenith is solved fastest.
-glm::dvec3 BeamDirection(const glm::dvec3& to_light) {
-  const bool is_seen = to_light.z >= std::sin(kLowestCloudLight_deg * kPi / 180.0);
-  return is_seen ? to_light : glm::dvec3(0.0, 0.0, 1.0);
-}
+/// Refraction of a beam that grazes the planet, before and after it does, and the radius of the sun.
+constexpr double kMostRefracted_deg = 1.5;
 
 CloudLightOptions LightOptions(double planet_radius_m) {
   CloudLightOptions options;
@@ -40,38 +36,63 @@ CloudPhases PhasesOf(const SceneCloudField& layer) {
 
 bool CloudsByTime::HasAny() const { return !scene_.clouds.empty(); }
 
-SolvedClouds CloudsByTime::Solved(double time_s, const glm::dvec3& to_light) const {
-  const glm::dvec3 beam = BeamDirection(to_light);
+std::optional<glm::dvec3> CloudsByTime::BeamIn(const CloudField& field, const Light& light) const {
+  if (light.to_light.z >= std::sin(kLowestCloudLight_deg * kRadiansPerDegree))
+    return light.to_light;
+  const auto dip = [&](double altitude_m) {
+    return std::acos(radius_m_ / (radius_m_ + std::max(altitude_m, 0.0)));
+  };
+  // A cloud at the horizon of the eye is as far away as both dips, and its own horizon once more.
+  const double lowest_rad = dip(light.eye_altitude_m) + 2.0 * dip(field.top_altitude_m()) +
+                            kMostRefracted_deg * kRadiansPerDegree;
+  const double depression_rad = std::asin(std::min(-light.to_light.z, 1.0));
+  // One in the zenith is solved fastest.
+  return depression_rad < lowest_rad ? std::optional(glm::dvec3(0.0, 0.0, 1.0)) : std::nullopt;
+}
+
+SolvedClouds CloudsByTime::Solved(double time_s, const Light& light) const {
   const auto same_time = std::find_if(made_.begin(), made_.end(),
                                       [&](const Made& made) { return made.time_s == time_s; });
   SolvedClouds solved;
   if (same_time != made_.end()) {
     solved.layers = same_time->clouds->layers;
-    for (const CloudLight& light : same_time->clouds->light)
-      solved.light.push_back(light.WithSun(beam));
+    for (const CloudLight& same : same_time->clouds->light) {
+      const auto beam = BeamIn(same.field(), light);
+      solved.light.push_back(beam ? same.WithSun(*beam) : same.WithoutSun());
+    }
     return solved;
   }
   solved.layers = std::make_shared<const CloudLayers>(CloudFieldsOf(scene_, time_s));
   for (const SceneCloudField& layer : *solved.layers) {
-    solved.light.emplace_back(
-        layer.field, CloudScatterers{PhasesOf(layer)},
-        CloudSurroundings{.to_sun = beam,
-                          .ground_altitude_m = std::min(ground_m_, layer.field.base_altitude_m())},
-        LightOptions(radius_m_));
+    const auto beam = BeamIn(layer.field, light);
+    const CloudSurroundings surroundings{
+        .to_sun = beam.value_or(glm::dvec3(0.0, 0.0, 1.0)),
+        .ground_altitude_m = std::min(ground_m_, layer.field.base_altitude_m())};
+    const CloudScatterers scatterers{PhasesOf(layer)};
+    const CloudLightOptions options = LightOptions(radius_m_);
+    solved.light.push_back(beam
+                               ? CloudLight(layer.field, scatterers, surroundings, options)
+                               : CloudLight::Unlit(layer.field, scatterers, surroundings, options));
   }
   return solved;
 }
 
-std::shared_ptr<const SolvedClouds> CloudsByTime::At(const UtcTime& time,
-                                                     const glm::dvec3& to_light) {
+bool CloudsByTime::IsSolvedFor(const Made& made, double time_s, const Light& light) const {
+  return made.time_s == time_s && made.to_light == light.to_light &&
+         std::ranges::all_of(made.clouds->light, [&](const CloudLight& of_layer) {
+           return of_layer.sun().IsUnlit() == !BeamIn(of_layer.field(), light);
+         });
+}
+
+std::shared_ptr<const SolvedClouds> CloudsByTime::At(const UtcTime& time, const Light& light) {
   const double time_s = CloudTime_s(scene_, time);
   const std::lock_guard lock(asking_);
   for (const Made& made : made_) {
-    if (made.time_s == time_s && made.to_light == to_light) return made.clouds;
+    if (IsSolvedFor(made, time_s, light)) return made.clouds;
   }
-  auto clouds = std::make_shared<const SolvedClouds>(Solved(time_s, to_light));
+  auto clouds = std::make_shared<const SolvedClouds>(Solved(time_s, light));
   if (made_.size() == kKept) made_.pop_front();
-  made_.push_back({time_s, to_light, std::move(clouds)});
+  made_.push_back({time_s, light.to_light, std::move(clouds)});
   return made_.back().clouds;
 }
 

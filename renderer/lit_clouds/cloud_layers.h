@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "atmosphere/time_place/time.h"
@@ -22,8 +23,8 @@ using CloudLayers = std::vector<SceneCloudField>;
 /// Returns the phase functions of the droplets or crystals of a layer, the same for all bands.
 [[nodiscard]] CloudPhases PhasesOf(const SceneCloudField& layer);
 
-/// Layers under one distant light. A light below kLowestCloudLight_deg, which no cloud sees, counts as
-/// one in the zenith.
+/// Layers under one distant light. A light below kLowestCloudLight_deg counts as one in the zenith, as
+/// long as the farthest cloud in sight can see it. Below that, nothing is solved for it.
 struct SolvedClouds {
   std::shared_ptr<const CloudLayers> layers;
   std::vector<CloudLight> light;  // of each layer, over black ground
@@ -49,10 +50,13 @@ class CloudsByTime {
   /// Returns whether the scene has clouds.
   [[nodiscard]] bool HasAny() const;
 
+  /// A distant light and the eye for which it lights clouds.
+  struct Light {
+    glm::dvec3 to_light;          // unit vector in the frame of the scene
+    double eye_altitude_m = 0.0;  // above the ellipsoid
+  };
   /// Returns the layers of a time in a light. Throws InputError as CloudFieldsOf and CloudLight do.
-  /// @param to_light  unit vector in the frame of the scene.
-  [[nodiscard]] std::shared_ptr<const SolvedClouds> At(const UtcTime& time,
-                                                       const glm::dvec3& to_light);
+  [[nodiscard]] std::shared_ptr<const SolvedClouds> At(const UtcTime& time, const Light& light);
 
  private:
   struct Made {
@@ -60,7 +64,10 @@ class CloudsByTime {
     glm::dvec3 to_light;
     std::shared_ptr<const SolvedClouds> clouds;
   };
-  [[nodiscard]] SolvedClouds Solved(double time_s, const glm::dvec3& to_light) const;
+  [[nodiscard]] SolvedClouds Solved(double time_s, const Light& light) const;
+  [[nodiscard]] bool IsSolvedFor(const Made& made, double time_s, const Light& light) const;
+  /// Returns the direction of the beam in a field; nothing for a light that no cloud in sight sees.
+  [[nodiscard]] std::optional<glm::dvec3> BeamIn(const CloudField& field, const Light& light) const;
 
   Scene scene_;
   double ground_m_, radius_m_;

@@ -172,6 +172,11 @@ void FrameContext::LightMedia() {
   }
 }
 
+std::shared_ptr<const SolvedClouds> FrameContext::CloudsIn(const DistantLight& light) const {
+  return scene_->clouds().At(instant_,
+                             {light.direction.seen, geometry().AltitudeOf(camera().eye())});
+}
+
 void FrameContext::LightClouds() {
   for (FrameLight& source : lights_) source.clouds = nullptr;
   if (!scene_->clouds().HasAny() || !Has(Effect::kClouds)) return;
@@ -179,8 +184,8 @@ void FrameContext::LightClouds() {
   for (FrameLight& source : lights_) {
     const DistantLight& light = source.light.source;
     source.clouds = std::make_shared<const LitClouds>(
-        scene_->clouds().At(instant_, light.direction.seen), scene_->geometry(), over_ground_->air,
-        light, settings_.cloud_light, PixelRaysOf(camera(), geometry(), settings_));
+        CloudsIn(light), scene_->geometry(), over_ground_->air, light, settings_.cloud_light,
+        PixelRaysOf(camera(), geometry(), settings_));
   }
 }
 
@@ -233,7 +238,7 @@ void FrameContext::AddPaths() {
     std::shared_ptr<const CloudLayers> layers;
     std::vector<CloudPhases> phases;
     if (source.clouds) {
-      layers = scene_->clouds().At(instant_, source.light.source.direction.seen)->layers;
+      layers = CloudsIn(source.light.source)->layers;
       std::ranges::transform(*layers, std::back_inserter(phases), PhasesOf);
     }
     source.paths = std::make_shared<const ScenePathTracer>(TracedScene{

@@ -102,6 +102,7 @@ class FrameContext {
   void LightNight();
   void LightMedia();
   void LightClouds();
+  [[nodiscard]] std::shared_ptr<const SolvedClouds> CloudsIn(const DistantLight& light) const;
   /// Follows the light of spheres onto the ground and into media.
   void LightSpheres();
   /// Computes the terrain's illumination by all lights.

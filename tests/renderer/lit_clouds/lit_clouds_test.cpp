@@ -12,8 +12,8 @@
 #include "atmosphere/math/numerics.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/lit_clouds/air_reflection.h"
-#include "tests/fixtures/directions.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/directions.h"
 #include "tests/fixtures/lamp_night.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/solved_media.h"
@@ -25,6 +25,8 @@ namespace {
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 const glm::dvec3 kHighSun = glm::normalize(glm::dvec3(0.766, 0.0, 0.643));
+const glm::dvec3 kVertical(0.0, 0.0, 1.0);
+const double kLowestCloudSine = std::sin(kLowestCloudLight_deg * kRadiansPerDegree);
 
 /// Clouds over the bare planet in air of three bands, under a sun 40 degrees high or another one.
 struct CloudStage {
@@ -38,7 +40,8 @@ struct CloudStage {
           options.low_sun.farthest_m = kFarthestCloudShade_m;
           solved->light.emplace_back(
               layers->front().field, CloudScatterers{CloudPhases(tests::LobeOf(0.8))},
-              CloudSurroundings{.to_sun = sun.direction.seen, .ground_altitude_m = ground_m},
+              CloudSurroundings{.to_sun = to_sun.z >= kLowestCloudSine ? to_sun : kVertical,
+                                .ground_altitude_m = ground_m},
               options);
           solved->layers = layers;
           return solved;
@@ -131,9 +134,7 @@ TEST(LitClouds, LightOnTheGroundIsThatOfTheDeckAbove) {
   }
 }
 
-glm::dvec3 SunOverClouds(double elevation_deg) {
-  return tests::DirectionAt(elevation_deg, 20.0);
-}
+glm::dvec3 SunOverClouds(double elevation_deg) { return tests::DirectionAt(elevation_deg, 20.0); }
 
 /// The spheres 4 km higher.
 class HighSpheres : public CloudShape {
@@ -193,6 +194,41 @@ TEST(LitClouds, CloudsGlowRedFromBelowAfterSunset) {
   const SkyThroughMedia on_ground = MeanSkyOnGround(glowing);
   EXPECT_GT(on_ground.added[2], 0.0F);
   EXPECT_LT(glowing.Blueness(on_ground.added), 0.1) << "light of clouds on the ground";
+}
+
+// Without a solution for the sun, means of its beams, which dim the twilight, are those of 4096
+// vertical beams in place of all beams of a map: they differ by 0.01 at most.
+TEST(LitClouds, NightHasTheSameLightWithoutASolutionForTheSun) {
+  const CloudStage stage(HighClouds(), SunOverClouds(-9.0));
+  const auto unlit = std::make_shared<SolvedClouds>(*stage.clouds);
+  unlit->light.front() = stage.clouds->light.front().WithoutSun();
+  const LitClouds with = stage.Lit(), without(unlit, stage.geometry, stage.air, stage.sun);
+  int screens = 0;
+  for (int i = 1; i <= 200; ++i) {
+    const glm::dvec3 eye(1280.0 * Halton(i, 2), 1280.0 * Halton(i, 3), 10.0);
+    const glm::dvec3 look = glm::normalize(glm::dvec3(0.3 * Halton(i, 5), 0.1, 1.0));
+    const CloudsOnRay one = with.Along(eye, look, kEndless);
+    const CloudsOnRay other = without.Along(eye, look, kEndless);
+    ASSERT_EQ(one.screens.size(), other.screens.size());
+    EXPECT_EQ(one.unscattered, other.unscattered);
+    for (std::size_t k = 0; k < one.screens.size(); ++k, ++screens) {
+      EXPECT_EQ(one.screens[k].transmittance, other.screens[k].transmittance);
+      EXPECT_EQ(one.screens[k].ground, other.screens[k].ground);
+      for (std::size_t band = 0; band < stage.air.bands(); ++band) {
+        const float light = one.screens[k].radiance[band];
+        EXPECT_GT(light, 0.0F) << "of the twilight";
+        EXPECT_NEAR(other.screens[k].radiance[band], light, 0.01F * light);
+      }
+    }
+  }
+  EXPECT_GT(screens, 20);
+  const SkyThroughMedia clear = SkyThroughMedia::Clear(stage.air.bands());
+  const SkyThroughMedia one = with.SkyOnSurface({}, 1.0, clear);
+  const SkyThroughMedia other = without.SkyOnSurface({}, 1.0, clear);
+  for (std::size_t band = 0; band < stage.air.bands(); ++band) {
+    EXPECT_NEAR(other.left[band], one.left[band], 0.01F);
+    EXPECT_NEAR(other.added[band], one.added[band], 0.02F * one.added[band]);
+  }
 }
 
 TEST(LitClouds, LightIsContinuousAtTheLowestSunOfAMap) {
