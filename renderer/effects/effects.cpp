@@ -23,7 +23,7 @@ constexpr std::array<EffectText, kEffects> kTexts{{
     {Effect::kHorizons, "horizons", "terrain hides no part of the sky from the ground", false,
      false},
     {Effect::kBounce, "bounce", "slopes send no light to each other", false, false},
-    {Effect::kShafts, "shafts", "terrain does not shade the air", false, false},
+    {Effect::kShafts, "shafts", "terrain does not shade air and clouds", false, false},
     {Effect::kShadows, "shadows", "terrain casts no shadows on the ground", false, false},
     {Effect::kRelief, "relief", "ground between samples of elevation is smooth", false, false},
     {Effect::kLights, "lights", "lamps are off", false, false},

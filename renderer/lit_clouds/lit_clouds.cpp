@@ -111,12 +111,15 @@ Spectrum NightAlong(const CloudsOnRay& clouds, const NightScattered& night, cons
 }
 
 LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
-                     const SolvedAir& air, const DistantLight& light, CloudLightMethod method,
-                     std::optional<PixelRays> pixels)
-    : clouds_(std::move(clouds)), geometry_(geometry), air_(air), light_(light) {
+                     const SolvedAir& air, const DistantLight& light, CloudView view)
+    : clouds_(std::move(clouds)),
+      past_terrain_(std::move(view.past_terrain)),
+      geometry_(geometry),
+      air_(air),
+      light_(light) {
   std::optional<int> paths;
-  if (pixels && method == CloudLightMethod::kHybrid) {
-    shared_.emplace(std::move(*pixels));
+  if (view.pixels && view.method == CloudLightMethod::kHybrid) {
+    shared_.emplace(std::move(*view.pixels));
     paths = kSharedPaths;
   }
   std::vector<CloudShadow::Layer> suns;
@@ -125,7 +128,7 @@ LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeom
     // The depths live as long as the solution.
     peak_scale_.push_back(Layer(i).optics().extinction_scale());
     suns.push_back({{clouds_, &Layer(i).sun()}, peak_scale_.back()});
-    along_rays_.push_back(Layer(i).WithMethod(method, paths));
+    along_rays_.push_back(Layer(i).WithMethod(view.method, paths));
     highest_m = std::max(highest_m, RangeOf(i).high_m);
   }
   shadow_ = std::make_shared<const CloudShadow>(std::move(suns), highest_m, geometry.radius_m());
@@ -381,7 +384,8 @@ LitClouds::LightAround LitClouds::AroundLayer(std::size_t layer, const LocalLigh
 
 CloudScreen LitClouds::Screen(const CloudRayPart& grey, const glm::dvec3& point) const {
   const LocalLight sun = LocalLightAt(geometry_, point, light_);
-  const double past = PastOthers(grey.layer, InFlatFrame(point, geometry_.radius_m()));
+  const double past = PastOthers(grey.layer, InFlatFrame(point, geometry_.radius_m())) *
+                      (past_terrain_ ? past_terrain_->At(point) : 1.0);
   const Spectrum beam = static_cast<float>(past * sun.visible_fraction) *
                         air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   const LightAround around = AroundLayer(grey.layer, sun);

@@ -30,6 +30,9 @@
 // clouds see it longer than the ground, and light from below lights them. Light of higher orders is
 // that of the sun's height over the place of the scene.
 //
+// A mountain takes away all light of the sun where its shadow falls on a screen, also that of higher
+// orders, which comes from a few hundred metres around.
+//
 // Lamps light clouds from below by the irradiance of a level surface there (LampsOnClouds).
 //
 // Not modelled:
@@ -39,8 +42,9 @@
 //   - lamplight that the ground reflects to clouds, and the air between clouds and towns of light
 //     pollution (NightAlong);
 //   - clouds in the mirror of water, which shows the clear sky;
-//   - mountains in the way of beams to clouds, and clouds more than kFarthestCloudShade_m away
-//     towards a low sun.
+//   - light that passes within clouds from their sunlit parts into those in the shadow of a mountain,
+//     and the shadow's edge within one screen;
+//   - clouds more than kFarthestCloudShade_m away towards a low sun.
 #pragma once
 
 #include <cstddef>
@@ -63,6 +67,7 @@
 #include "renderer/lit_clouds/shared_cloud_light.h"
 #include "renderer/media/lit_medium.h"
 #include "renderer/surface/scene_geometry.h"
+#include "renderer/surface/terrain_sunlight.h"
 
 namespace alpenglow::renderer {
 
@@ -138,16 +143,22 @@ struct NightScattered {
                                   const Spectrum& whole,
                                   const std::function<Spectrum(double)>& left);
 
+/// How a picture sees clouds.
+struct CloudView {
+  CloudLightMethod method = CloudLightMethod::kFast;  // of light along rays
+  /// Rays of a picture share the noise of the hybrid method (shared_cloud_light.h), with
+  /// LitClouds::kSharedPaths paths each. Nothing: every ray has the paths of the options.
+  std::optional<PixelRays> pixels = std::nullopt;
+  /// The light that mountains let through to clouds; null: all.
+  std::shared_ptr<const TerrainSunlight> past_terrain = nullptr;
+};
+
 /// Immutable; safe to use from many threads. Refers to geometry and air.
 class LitClouds {
  public:
-  /// @param clouds  solved for the light. @param method  of light along rays. @param pixels  of a
-  ///     picture. Their rays share the noise of the hybrid method (shared_cloud_light.h), with
-  ///     kSharedPaths paths each. Nothing: every ray has the paths of the options.
+  /// @param clouds  solved for the light.
   LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
-            const SolvedAir& air, const DistantLight& light,
-            CloudLightMethod method = CloudLightMethod::kFast,
-            std::optional<PixelRays> pixels = std::nullopt);
+            const SolvedAir& air, const DistantLight& light, CloudView view = {});
 
   static constexpr int kSharedPaths = 16;
 
@@ -223,6 +234,7 @@ class LitClouds {
   std::vector<CloudLight> along_rays_;  // of each layer, by the method
   std::vector<double> peak_scale_;      // of each layer: s of cloud_shadow.h
   std::optional<SharedCloudLight> shared_;
+  std::shared_ptr<const TerrainSunlight> past_terrain_;  // null: none
   const SceneGeometry& geometry_;
   SolvedAir air_;
   DistantLight light_;

@@ -184,8 +184,9 @@ void FrameContext::LightClouds() {
   for (FrameLight& source : lights_) {
     const DistantLight& light = source.light.source;
     source.clouds = std::make_shared<const LitClouds>(
-        CloudsIn(light), scene_->geometry(), over_ground_->air, light, settings_.cloud_light,
-        PixelRaysOf(camera(), geometry(), settings_));
+        CloudsIn(light), scene_->geometry(), over_ground_->air, light,
+        CloudView{settings_.cloud_light, PixelRaysOf(camera(), geometry(), settings_),
+                  source.shadows});
   }
 }
 

@@ -23,6 +23,12 @@ TerrainSunlight::TerrainSunlight(const SceneGround& ground, const glm::dvec3& to
 
 bool TerrainSunlight::IsBroken() const { return !std::holds_alternative<Unbroken>(method_); }
 
+double TerrainSunlight::At(const glm::dvec3& point) const {
+  if (const auto* heights = std::get_if<ShadowHeights>(&method_)) return heights->SunlightAt(point);
+  if (const auto* probes = std::get_if<SunProbes>(&method_)) return probes->SunlightAt(point);
+  return 1.0;
+}
+
 SunlitPath TerrainSunlight::Along(const glm::dvec3& origin, const glm::dvec3& unit,
                                   double length_m) const {
   if (const auto* heights = std::get_if<ShadowHeights>(&method_))

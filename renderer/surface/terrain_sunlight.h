@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// TerrainSunlight finds sunlight in the air over the terrain, by the method that suits the terrain.
+// TerrainSunlight finds sunlight in air and clouds over the terrain, by the method that suits the
+// terrain.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -27,6 +28,8 @@ class TerrainSunlight {
   /// length_m is finite. The planet's own shadow is not considered.
   [[nodiscard]] SunlitPath Along(const glm::dvec3& origin, const glm::dvec3& unit,
                                  double length_m) const;
+  /// Returns the sunlight that terrain lets through to a point of the air, in [0, 1].
+  [[nodiscard]] double At(const glm::dvec3& point) const;
 
  private:
   struct Unbroken {};

@@ -311,8 +311,6 @@ struct ShadowHeights::Walk {
     Block(level, column, row, begin, end);
   }
 
-  using Clearances = std::array<double, kBeams>;
-
   // Returns the clearance of each beam over the beam that terrain blocks, at a place in a cell.
   [[nodiscard]] Clearances ClearanceAt(std::size_t column, std::size_t row, double t) const {
     const double across = std::clamp(u + t * u_slope - static_cast<double>(column), 0.0, 1.0);
@@ -329,19 +327,6 @@ struct ShadowHeights::Walk {
       clearance[beam] = Beam(beam, t) - (edge + along * (between(high) - edge));
     }
     return clearance;
-  }
-
-  // Returns the height of the disk's centre over the edge, in radii. It is interpolated between the
-  // last beam that passes, from the top of the disk down, and the first that does not.
-  static double HeightFrom(const Clearances& clearance) {
-    if (!(clearance[kBeams - 1] > 0.0)) return -1.0;
-    std::size_t passes = kBeams - 1;
-    while (passes > 0 && clearance[passes - 1] > 0.0) --passes;
-    if (passes == 0) return 1.0;
-    const double over = clearance[passes];
-    const double under = clearance[passes - 1];
-    const double share = over / (over - under);
-    return HeightOver(passes) + share * (HeightOver(passes - 1) - HeightOver(passes));
   }
 
   // Clearances are linear through a cell; the light has a kink where one of them passes 0.
@@ -405,20 +390,44 @@ ShadowHeights::Beams ShadowHeights::HighestAt(double column, double line) const 
   return between;
 }
 
+double ShadowHeights::HeightFrom(const Clearances& clearance) {
+  if (!(clearance[kBeams - 1] > 0.0)) return -1.0;
+  std::size_t passes = kBeams - 1;
+  while (passes > 0 && clearance[passes - 1] > 0.0) --passes;
+  if (passes == 0) return 1.0;
+  const double over = clearance[passes];
+  const double under = clearance[passes - 1];
+  const double share = over / (over - under);
+  return HeightOver(passes) + share * (HeightOver(passes - 1) - HeightOver(passes));
+}
+
+std::optional<ShadowHeights::Clearances> ShadowHeights::ClearancesAt(const glm::dvec3& point,
+                                                                     double cells) const {
+  if (highest_.empty()) return std::nullopt;
+  const double column = (glm::dot(point, sunwards_) - first_u_m_) / cell_m_ + cells;
+  const double line = (glm::dot(point, across_) - first_v_m_) / cell_m_;
+  const bool is_beside = line < 0.0 || line > static_cast<double>(lines_ - 1);
+  if (is_beside || column > static_cast<double>(columns_ - 1)) return std::nullopt;
+  const Beams through = BeamsOf(point), edge = HighestAt(column, line);
+  Clearances clearance;
+  for (std::size_t beam = 0; beam < kBeams; ++beam)
+    clearance[beam] = static_cast<double>(through[beam] - edge[beam]);
+  return clearance;
+}
+
+double ShadowHeights::SunlightAt(const glm::dvec3& point) const {
+  const std::optional<Clearances> clearance = ClearancesAt(point, 0.0);
+  return clearance ? SunlightOverEdge(HeightFrom(*clearance)) : 1.0;
+}
+
 // Clearances increase from the lowest beam to the highest; the edge cuts the disk where they pass
 // 0. Beyond the disk the two nearest beams are extrapolated.
 SunOverEdge ShadowHeights::Over(const glm::dvec3& ground) const {
   constexpr double kOwnCells = 1.0;
   constexpr SunOverEdge kNothing{1e7, 0.0};
-  if (highest_.empty()) return kNothing;
-  const double column = (glm::dot(ground, sunwards_) - first_u_m_) / cell_m_ + kOwnCells;
-  const double line = (glm::dot(ground, across_) - first_v_m_) / cell_m_;
-  const bool is_beside = line < 0.0 || line > static_cast<double>(lines_ - 1);
-  if (is_beside || column > static_cast<double>(columns_ - 1)) return kNothing;
-  const Beams through = BeamsOf(ground), edge = HighestAt(column, line);
-  std::array<double, kBeams> clearance;
-  for (std::size_t beam = 0; beam < kBeams; ++beam)
-    clearance[beam] = static_cast<double>(through[beam] - edge[beam]);
+  const std::optional<Clearances> found = ClearancesAt(ground, kOwnCells);
+  if (!found) return kNothing;
+  const Clearances& clearance = *found;
   const std::size_t upper = clearance[1] > 0.0 ? 1 : 2;
   const double over = clearance[upper], under = clearance[upper - 1];
   const double radius = std::max((over - under) / (HeightOver(upper - 1) - HeightOver(upper)), 0.0);

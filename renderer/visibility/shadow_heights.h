@@ -75,6 +75,9 @@ class ShadowHeights {
   [[nodiscard]] SunlitPath Along(const glm::dvec3& origin, const glm::dvec3& unit,
                                  double length_m) const;
 
+  /// Returns the sunlight that terrain lets through to a point in the air, in [0, 1].
+  [[nodiscard]] double SunlightAt(const glm::dvec3& point) const;
+
   /// Returns the visibility of the sun from a place of the ground. Terrain within a cell counts as
   /// the place's own surface: the caller tests whether its normal faces the sun.
   [[nodiscard]] SunOverEdge Over(const glm::dvec3& ground) const;
@@ -92,6 +95,11 @@ class ShadowHeights {
   static constexpr double HeightOver(std::size_t beam) {
     return 1.0 - 2.0 * static_cast<double>(beam) / static_cast<double>(kBeams - 1);
   }
+  /// Clearance of each beam over the beam that terrain blocks [m].
+  using Clearances = std::array<double, kBeams>;
+  /// Returns the height of the disk's centre over the edge, in radii. It is interpolated between the
+  /// last beam that passes, from the top of the disk down, and the first that does not.
+  [[nodiscard]] static double HeightFrom(const Clearances& clearance);
   struct Extremes {
     float highest_lower;  // C of the lowest beam: above it everything is lit
     float lowest_upper;   // C of the highest beam: below it everything is dark
@@ -104,6 +112,9 @@ class ShadowHeights {
 
   [[nodiscard]] Beams BeamsOf(const glm::dvec3& point) const;
   [[nodiscard]] Beams HighestAt(double column, double line) const;
+  /// Returns the clearances at a point, with the terrain from a number of cells towards the sun on;
+  /// nothing beside the terrain and on its sunward side.
+  [[nodiscard]] std::optional<Clearances> ClearancesAt(const glm::dvec3& point, double cells) const;
   void Deposit(const TriangleMesh& mesh);
   void SweepFromTheSun();
   void BuildPyramid();

@@ -135,6 +135,18 @@ SunProbes::Stretch SunProbes::WithinTheShadowOfTheBox(const glm::dvec3& origin,
   return stretch;
 }
 
+double SunProbes::SunlightAt(const glm::dvec3& point) const {
+  const auto sees = [&](const glm::dvec3& to) {
+    return !terrain_.Occluded(point, to, to, std::numeric_limits<double>::infinity());
+  };
+  const glm::dvec3 top_of_sun =
+      2.0 * glm::dot(bottom_of_sun_, to_light_) * to_light_ - bottom_of_sun_;
+  // Half of the light passes when the edge is in the middle.
+  if (sees(bottom_of_sun_)) return sees(to_light_) ? 1.0 : 0.5;
+  if (sees(to_light_)) return 0.75;
+  return sees(top_of_sun) ? 0.25 : 0.0;
+}
+
 SunlitPath SunProbes::Along(const glm::dvec3& origin, const glm::dvec3& unit,
                             double length_m) const {
   if (!(length_m > 0.0)) return {};

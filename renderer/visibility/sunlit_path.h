@@ -73,6 +73,9 @@ class SunProbes {
   /// Returns the sunlit stretches of a ray within [0, length_m]; length_m is finite.
   [[nodiscard]] SunlitPath Along(const glm::dvec3& origin, const glm::dvec3& unit,
                                  double length_m) const;
+  /// Returns the sunlight that terrain lets through to a point, in [0, 1], by rays to the bottom, the
+  /// middle and the top of the disk: within a quarter in a penumbra.
+  [[nodiscard]] double SunlightAt(const glm::dvec3& point) const;
 
  private:
   struct Stretch {

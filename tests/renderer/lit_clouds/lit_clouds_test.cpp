@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -16,8 +17,10 @@
 #include "tests/fixtures/directions.h"
 #include "tests/fixtures/lamp_night.h"
 #include "tests/fixtures/media.h"
+#include "tests/fixtures/mesh_scene.h"
 #include "tests/fixtures/solved_media.h"
 #include "tests/fixtures/sphere_clouds.h"
+#include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -377,6 +380,67 @@ TEST(LitClouds, SingleCloudsSeeTheBrightHorizon) {
 
 // A thousand candelas below the second of two screens; air takes a few hundredths of the light, and
 // the glow of the air is little of it.
+/// Returns sunlight past a crest of 5000 m from south to north, 4000 m to the east.
+std::shared_ptr<const TerrainSunlight> PastACrest(const std::filesystem::path& folder,
+                                                  const glm::dvec3& to_sun) {
+  static const SceneGround kCrest = LoadGround(tests::MeshScene(
+      QuickScene(2.0, 0.0, 0.0, 60.0), folder / "crest.obj",
+      "v 1000 -30000 0\nv 4000 -30000 5000\nv 7000 -30000 0\nv 1000 30000 0\nv 4000 30000 5000\n"
+      "v 7000 30000 0\nf 1 2 5 4\nf 2 3 6 5\n"));
+  return std::make_shared<const TerrainSunlight>(kCrest, to_sun, 0.00465);
+}
+
+using CloudsBehindMountains = TemporaryFolder;
+
+// The sun stands 40 degrees high in the east. Clouds 1000 to 1400 m up are in the shadow for x
+// between -300 m and the crest, and in the sun for x below -900 m.
+TEST_F(CloudsBehindMountains, HaveNoSunlightInTheShadow) {
+  const CloudStage& stage = DeckStage();
+  const LitClouds open = stage.Lit();
+  const LitClouds behind(stage.clouds, stage.geometry, stage.air, stage.sun,
+                         {.past_terrain = PastACrest(folder_, kHighSun)});
+  const auto difference_at = [&](double x_m) {
+    const glm::dvec3 eye(x_m, 0.0, 0.0);
+    const CloudScreen with = open.Along(eye, kVertical, kEndless).screens.at(0);
+    const CloudScreen without = behind.Along(eye, kVertical, kEndless).screens.at(0);
+    EXPECT_EQ(with.transmittance, without.transmittance);
+    EXPECT_EQ(with.ground, without.ground);
+    return with.radiance + -1.0F * without.radiance;
+  };
+  for (const double x_m : {-8000.0, -2000.0, -1000.0}) {
+    const Spectrum difference = difference_at(x_m);
+    for (const float band : difference.values()) EXPECT_EQ(band, 0.0F) << x_m;
+  }
+  const CloudRayLight grey = stage.clouds->light.front().Radiance({{}, kVertical});
+  const LocalLight sun = LocalLightAt(stage.geometry, {0.0, 0.0, grey.mean_distance_m}, stage.sun);
+  const Spectrum beam = stage.air.BeamLeft(sun.altitude_m, sun.mu_s_effective);
+  for (const double x_m : {-200.0, 500.0}) {
+    const Spectrum difference = difference_at(x_m);
+    for (std::size_t band = 0; band < beam.size(); ++band) {
+      const float sunlight = static_cast<float>(grey.sun) * beam[band];
+      EXPECT_NEAR(difference[band], sunlight, 0.01F * sunlight) << x_m;
+    }
+  }
+}
+
+// Between sky and cloud, light seen in a mirror is that of a picture of the sky, but for the light of
+// nearer air, which is only as bright as its transmittance tells.
+TEST(LitClouds, SkyBehindCloudsIsTheirLightAndWhatTheyLeave) {
+  const CloudStage& stage = DeckStage();
+  const LitClouds lit = stage.Lit();
+  const glm::dvec3 eye(0.0, 0.0, 10.0), up = glm::normalize(glm::dvec3(0.5, 0.2, 0.6));
+  Spectrum clear(stage.air.bands());
+  std::ranges::fill(clear.values(), 0.05F);
+  const Spectrum seen = lit.OverSky(eye, up, clear);
+  const CloudScreen screen = lit.Along(eye, up, kEndless).screens.at(0);
+  for (std::size_t band = 0; band < seen.size(); ++band) {
+    EXPECT_LT(seen[band], screen.radiance[band] + clear[band]);
+    EXPECT_GT(seen[band], 0.8F * screen.radiance[band] + screen.transmittance * clear[band]);
+  }
+  const Spectrum above = lit.OverSky({0.0, 0.0, 3000.0}, up, clear);
+  EXPECT_TRUE(std::ranges::equal(above.values(), clear.values())) << "no cloud in the way";
+}
+
 TEST(LitClouds, LampsLightCloudsByTheInverseSquare) {
   Scene scene = tests::NightScene();
   scene.lights = {tests::LightAt(600.0, 0.0, 0.0, 1000.0)};

@@ -283,6 +283,29 @@ TEST(SunProbes, AirOutOfReachOfShadowsIsNotProbed) {
   EXPECT_TRUE(probes.Along({0.0, 0.0, 300.0}, {0.0, 0.0, 1.0}, 0.0).empty());
 }
 
+// The crest is 1000 m up at x = 0. A point sees it at an elevation that follows from its place.
+TEST(SunProbes, PointsOfTheAirHaveTheLightOverACrestInFront) {
+  constexpr double kElevation = 8.0 * kDegree;
+  const Terrain terrain(Ridge());
+  const ShadowHeights heights(Ridge(), EasternSun(8.0), kSunRadius);
+  const SunProbes probes(terrain, EasternSun(8.0), kSunRadius);
+  for (const double away_m : {400.0, 2500.0, 5000.0}) {  // the last one is before the terrain
+    for (const double radii : {-3.0, -0.9, -0.5, 0.0, 0.3, 0.8, 3.0}) {
+      const double crest = kElevation - radii * kSunRadius;
+      const glm::dvec3 point(-away_m, 300.0, 1000.0 - away_m * std::tan(crest));
+      const double light = SunlightOverEdge(radii);
+      EXPECT_NEAR(heights.SunlightAt(point), light, 0.02) << away_m << ", " << radii;
+      EXPECT_NEAR(probes.SunlightAt(point), light, 0.25) << away_m << ", " << radii;
+      EXPECT_NEAR(
+          SunlightAt(heights.Along(point - glm::dvec3(0.0, 50.0, 0.0), {0.0, 1.0, 0.0}, 100.0),
+                     50.0),
+          heights.SunlightAt(point), 0.02);
+    }
+  }
+  EXPECT_EQ(heights.SunlightAt({2000.0, 0.0, 500.0}), 1.0) << "on the sunward side";
+  EXPECT_EQ(heights.SunlightAt({-2000.0, 30000.0, 10.0}), 1.0) << "beside the terrain";
+}
+
 TEST(SunProbes, OverhangsAreNotASingleSurface) {
   EXPECT_TRUE(IsOneSurface(Terrain(Bridge(false))));
   EXPECT_FALSE(IsOneSurface(Terrain(Bridge(true)))) << "the plain cannot be seen from above";
