@@ -101,4 +101,12 @@ Spectrum TerrainIrradiance::Radiance(const SlopePoint& at, const glm::dvec3& dir
   return (1.0F - ground) * sky + ground * slopes_->Radiance(at.point, azimuth, horizon, over_it);
 }
 
+double TerrainIrradiance::SkyShare(const SlopePoint& at, const glm::dvec3& direction,
+                                   const Spread& spread) const {
+  if (!slopes_) return 1.0;
+  const glm::dvec3 here = AtPlace(direction, at.up);
+  const BetweenAzimuths azimuth(std::atan2(here.y, here.x));
+  return 1.0 - GroundShare(here.z, spread, azimuth.Mean(horizons_->map().At(at.point)));
+}
+
 }  // namespace alpenglow::renderer

@@ -110,6 +110,9 @@ class TerrainIrradiance {
   /// horizons.
   [[nodiscard]] Spectrum Radiance(const SlopePoint& at, const glm::dvec3& direction,
                                   const Spread& spread = {}) const;
+  /// Returns the fraction of the direction's spread in which Radiance() has the sky, in [0, 1].
+  [[nodiscard]] double SkyShare(const SlopePoint& at, const glm::dvec3& direction,
+                                const Spread& spread = {}) const;
 
  private:
   std::shared_ptr<const TerrainHorizons> horizons_;

@@ -133,6 +133,11 @@ LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeom
   }
   shadow_ = std::make_shared<const CloudShadow>(std::move(suns), highest_m, geometry.radius_m());
   FindExchange();
+  if (view.mirror) {
+    mirror_.emplace(*view.mirror, [this](const glm::dvec3& point, const glm::dvec3& direction) {
+      return ChangeAlong(point, direction);
+    });
+  }
 }
 
 AltitudeRange LitClouds::RangeOf(std::size_t layer) const {
@@ -439,15 +444,55 @@ CloudsOnRay LitClouds::Along(const glm::dvec3& origin, const glm::dvec3& directi
     return PartsOf(origin, ray, by_paths);
   };
   const PixelRays::Ray ray{direction, length_m};
+  return CloudsOf(
+      shared_ && shared_->eye() == origin ? shared_->Parts(ray, trace) : trace(ray, true), origin,
+      direction);
+}
+
+CloudsOnRay LitClouds::CloudsOf(const std::vector<CloudRayPart>& parts, const glm::dvec3& origin,
+                                const glm::dvec3& direction) const {
   CloudsOnRay clouds;
   double unscattered = 1.0;
-  for (const CloudRayPart& part :
-       shared_ && shared_->eye() == origin ? shared_->Parts(ray, trace) : trace(ray, true)) {
+  for (const CloudRayPart& part : parts) {
     clouds.Add(Screen(part, origin + part.distance_m * direction));
     unscattered *= part.transmittance;
   }
   clouds.unscattered = static_cast<float>(unscattered);
   return clouds;
+}
+
+Spectrum LitClouds::OverSky(const glm::dvec3& point, const glm::dvec3& direction,
+                            const Spectrum& clear) const {
+  const CloudChange change =
+      mirror_ ? mirror_->Towards(direction, geometry_.UpAt(point)) : ChangeAlong(point, direction);
+  return change.left * clear + change.added;
+}
+
+CloudChange LitClouds::ChangeAlong(const glm::dvec3& point, const glm::dvec3& direction) const {
+  const PixelRays::Ray endless{direction, std::numeric_limits<double>::infinity()};
+  const CloudsOnRay clouds = CloudsOf(PartsOf(point, endless, false), point, direction);
+  CloudChange change{Spectrum(air_.bands(), 1.0F), Spectrum(air_.bands())};
+  if (clouds.screens.empty()) return change;
+  const double cosine = std::clamp(glm::dot(direction, geometry_.UpAt(point)), -1.0, 1.0);
+  const auto left_after = [&](double distance_m) {
+    ViewRay ray{geometry_.AltitudeOf(point), cosine, 1.0, 0.0};
+    ray.length_m = distance_m;
+    return air_.single_scattering().TransmittanceAlong(ray);
+  };
+  const Spectrum whole = left_after(endless.length_m);
+  const auto share_up_to = [&](double distance_m) {
+    Spectrum share = left_after(distance_m);
+    for (std::size_t band = 0; band < share.size(); ++band)
+      share[band] = whole[band] < 1.0F ? (1.0F - share[band]) / (1.0F - whole[band]) : 1.0F;
+    return share;
+  };
+  change.left = clouds.Dimmed(change.left, share_up_to);
+  float past = 1.0F;
+  for (const CloudScreen& screen : clouds.screens) {
+    change.added = change.added + past * (left_after(screen.distance_m) * screen.radiance);
+    past *= screen.transmittance;
+  }
+  return change;
 }
 
 }  // namespace alpenglow::renderer

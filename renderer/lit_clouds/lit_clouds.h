@@ -41,7 +41,6 @@
 //     and air;
 //   - lamplight that the ground reflects to clouds, and the air between clouds and towns of light
 //     pollution (NightAlong);
-//   - clouds in the mirror of water, which shows the clear sky;
 //   - light that passes within clouds from their sunlit parts into those in the shadow of a mountain,
 //     and the shadow's edge within one screen;
 //   - clouds more than kFarthestCloudShade_m away towards a low sun.
@@ -64,6 +63,7 @@
 #include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/lit_clouds/cloud_shadow.h"
 #include "renderer/lit_clouds/layer_exchange.h"
+#include "renderer/lit_clouds/mirrored_clouds.h"
 #include "renderer/lit_clouds/shared_cloud_light.h"
 #include "renderer/media/lit_medium.h"
 #include "renderer/surface/scene_geometry.h"
@@ -151,6 +151,8 @@ struct CloudView {
   std::optional<PixelRays> pixels = std::nullopt;
   /// The light that mountains let through to clouds; null: all.
   std::shared_ptr<const TerrainSunlight> past_terrain = nullptr;
+  /// The eye for which ground mirrors clouds. Nothing: mirrored rays are followed one by one.
+  std::optional<MirrorEye> mirror = std::nullopt;
 };
 
 /// Immutable; safe to use from many threads. Refers to geometry and air.
@@ -159,12 +161,21 @@ class LitClouds {
   /// @param clouds  solved for the light.
   LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
             const SolvedAir& air, const DistantLight& light, CloudView view = {});
+  LitClouds(const LitClouds&) = delete;
+  LitClouds& operator=(const LitClouds&) = delete;
 
   static constexpr int kSharedPaths = 16;
 
   /// Returns the clouds on a ray. @param length_m  may be infinite.
   [[nodiscard]] CloudsOnRay Along(const glm::dvec3& origin, const glm::dvec3& direction,
                                   double length_m) const;
+
+  /// Returns the light of the sky that arrives at a point of a mirror, with clouds in front of a part of
+  /// it, per unit solar irradiance [1/sr]. Clouds have the light of the fast method.
+  /// @param clear  light of the clear sky. The air before a cloud sends as large a part of it as it has
+  ///     of the loss 1 - T of the whole way.
+  [[nodiscard]] Spectrum OverSky(const glm::dvec3& point, const glm::dvec3& direction,
+                                 const Spectrum& clear) const;
 
   [[nodiscard]] const CloudShadow& shadow() const { return *shadow_; }
 
@@ -189,6 +200,10 @@ class LitClouds {
   /// @param by_paths  whether the light is that by the method of choice.
   [[nodiscard]] std::vector<CloudRayPart> PartsOf(const glm::dvec3& origin,
                                                   const PixelRays::Ray& ray, bool by_paths) const;
+  [[nodiscard]] CloudsOnRay CloudsOf(const std::vector<CloudRayPart>& parts,
+                                     const glm::dvec3& origin, const glm::dvec3& direction) const;
+  /// Returns what clouds change in the light of a clear sky along a ray.
+  [[nodiscard]] CloudChange ChangeAlong(const glm::dvec3& point, const glm::dvec3& direction) const;
   void FindExchange();
   /// Finds the light that layers turn by a few degrees, at each interface.
   void FindTurned();
@@ -253,6 +268,7 @@ class LitClouds {
   std::vector<Spectrum> beams_;    // mean ones on each layer, per unit solar irradiance
   std::vector<float> sky_past_;    // transmittance of each layer for skylight
   std::vector<Spectrum> diffuse_;  // factor in the air at each interface
+  std::optional<MirroredClouds> mirror_;
 };
 
 }  // namespace alpenglow::renderer

@@ -122,20 +122,28 @@ GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const gl
   return parts_.material.OfPlanet(at, albedo);
 }
 
-Spectrum GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,
-                               const Lighting& light, const LocalLight& sun) const {
+Spectrum GroundLight::Mirrored(const SeenGround& seen, const GroundSources& from,
+                               const LocalLight& sun) const {
   Spectrum sum(air_.bands());
-  const auto rays = patch.Mirrored(hit.normal, to_eye);
+  const auto rays = seen.patch.Mirrored(seen.hit.normal, seen.to_eye);
   for (const MirroredRay& ray : rays.All())
-    sum = sum + static_cast<float>(ray.weight) * SeenIn(ray, hit, light, sun);
+    sum = sum + static_cast<float>(ray.weight) * SeenIn(ray, seen.hit, from, sun);
   return sum;
 }
 
-Spectrum GroundLight::SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
+Spectrum GroundLight::SeenIn(const MirroredRay& ray, const Hit& hit, const GroundSources& from,
                              const LocalLight& sun) const {
+  const TerrainIrradiance& light = *from.light.on_terrain;
   const SlopePoint at{hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air};
-  return SeesTerrain(hit, light) ? light.on_terrain->Radiance(at, ray.direction, ray.spread)
-                                 : light.on_terrain->SkyRadiance(at, ray.direction);
+  const bool sees_terrain = SeesTerrain(hit, from.light);
+  const Spectrum seen = sees_terrain ? light.Radiance(at, ray.direction, ray.spread)
+                                     : light.SkyRadiance(at, ray.direction);
+  if (from.clouds == nullptr) return seen;
+  const double sky_share = sees_terrain ? light.SkyShare(at, ray.direction, ray.spread) : 1.0;
+  if (sky_share <= 0.0) return seen;
+  const Spectrum clear = sees_terrain ? light.SkyRadiance(at, ray.direction) : seen;
+  const Spectrum cloudy = from.clouds->OverSky(hit.smooth_point, ray.direction, clear);
+  return seen + static_cast<float>(sky_share) * (cloudy + -1.0F * clear);
 }
 
 std::optional<Spectrum> GroundLight::SunIrradiance(const Hit& hit, const GroundSources& from,
@@ -197,7 +205,7 @@ NaturalRadiance GroundLight::Natural(const SeenGround& seen, const GroundSources
     sent.radiance = sent.radiance + static_cast<float>(1.0 / kPi) *
                                         (seen.albedo * SkyIrradiance(seen.hit, from, sun));
     if (seen.patch.IsGlossy() && light.on_terrain)
-      sent.radiance = sent.radiance + Mirrored(seen.patch, seen.hit, seen.to_eye, light, sun);
+      sent.radiance = sent.radiance + Mirrored(seen, from, sun);
   }
   sent.radiance = light.source.irradiance * sent.radiance;
   return sent;
@@ -244,9 +252,8 @@ PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSource
   }
   if (light.effects.Has(Effect::kSkylight) && light.on_terrain) {
     const auto rays = seen.patch.Mirrored(seen.hit.normal, to_eye);
-    for (const MirroredRay& ray : rays.All()) {
-      add(ray.direction, static_cast<float>(ray.weight) * SeenIn(ray, seen.hit, light, sun));
-    }
+    for (const MirroredRay& ray : rays.All())
+      add(ray.direction, static_cast<float>(ray.weight) * SeenIn(ray, seen.hit, from, sun));
   }
   return light.source.irradiance * sum;
 }

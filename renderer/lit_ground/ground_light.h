@@ -120,13 +120,12 @@ class GroundLight {
   /// @param cosine  between the direction to the eye and the normal of the mesh.
   [[nodiscard]] GroundPatch PatchAt(const Hit& hit, const Lighting& light, const glm::dvec3& up,
                                     double cosine) const;
-  /// Returns the radiance of the sky, and of the slopes in front of it, mirrored in a glossy
+  /// Returns the radiance of the sky, of clouds and of the slopes in front of them, mirrored in a glossy
   /// surface, per unit solar irradiance [1/sr].
-  [[nodiscard]] Spectrum Mirrored(const GroundPatch& patch, const Hit& hit,
-                                  const glm::dvec3& to_eye, const Lighting& light,
+  [[nodiscard]] Spectrum Mirrored(const SeenGround& seen, const GroundSources& from,
                                   const LocalLight& sun) const;
   /// Returns the radiance that arrives along a mirrored ray, per unit solar irradiance [1/sr].
-  [[nodiscard]] Spectrum SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
+  [[nodiscard]] Spectrum SeenIn(const MirroredRay& ray, const Hit& hit, const GroundSources& from,
                                 const LocalLight& sun) const;
 
   GroundParts parts_;

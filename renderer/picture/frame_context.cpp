@@ -63,6 +63,14 @@ PixelRays PixelRaysOf(const CameraRays& camera, const SceneGeometry& geometry,
           [camera](const glm::dvec3& direction) { return camera.PlaceOf(direction); }};
 }
 
+/// Returns the mirror of level ground below an eye.
+MirrorEye MirrorBelow(const glm::dvec3& eye, const SceneGeometry& geometry) {
+  const glm::dvec3 up = geometry.UpAt(eye);
+  const Hit below = geometry.Trace(eye, -up, 1e-3);
+  const double height_m = below.kind == HitKind::kSky ? 0.0 : below.distance_m;
+  return {eye - height_m * up, up, height_m, geometry.radius_m()};
+}
+
 }  // namespace
 
 FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camera_sample,
@@ -186,7 +194,7 @@ void FrameContext::LightClouds() {
     source.clouds = std::make_shared<const LitClouds>(
         CloudsIn(light), scene_->geometry(), over_ground_->air, light,
         CloudView{settings_.cloud_light, PixelRaysOf(camera(), geometry(), settings_),
-                  source.shadows});
+                  source.shadows, MirrorBelow(camera().eye(), geometry())});
   }
 }
 

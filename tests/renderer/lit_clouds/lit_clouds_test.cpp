@@ -437,6 +437,12 @@ TEST(LitClouds, SkyBehindCloudsIsTheirLightAndWhatTheyLeave) {
     EXPECT_LT(seen[band], screen.radiance[band] + clear[band]);
     EXPECT_GT(seen[band], 0.8F * screen.radiance[band] + screen.transmittance * clear[band]);
   }
+  const LitClouds mirrored(stage.clouds, stage.geometry, stage.air, stage.sun,
+                           {.mirror = MirrorEye{eye, kVertical, 2.0, stage.geometry.radius_m()}});
+  const Spectrum by_table = mirrored.OverSky(eye, up, clear);
+  for (std::size_t band = 0; band < seen.size(); ++band) {
+    EXPECT_NEAR(by_table[band], seen[band], 0.01F * seen[band]) << "the deck is alike everywhere";
+  }
   const Spectrum above = lit.OverSky({0.0, 0.0, 3000.0}, up, clear);
   EXPECT_TRUE(std::ranges::equal(above.values(), clear.values())) << "no cloud in the way";
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,7 @@
 #include "renderer/camera/camera_rays.h"
 #include "renderer/lit_ground/ground_light.h"
 #include "renderer/picture/render.h"
+#include "renderer/scene/scene_clouds.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/lamp_site.h"
 #include "tests/fixtures/luminance.h"
@@ -67,6 +69,38 @@ TEST(GroundLight, WaterMirrorsTheSkyByFresnelsLaw) {
   const double down = OverTheSea(100.0, -60.0), sky = OverTheSea(100.0, 60.0);
   EXPECT_GT(down, 0.02 * sky);
   EXPECT_LT(down, 0.15 * sky);
+}
+
+/// Returns the mean colour (linear sRGB) of a narrow view over nearly calm water below stratus.
+glm::dvec3 UnderStratus(double pitch) {
+  static const SceneRenderer renderer([] {
+    Scene scene = QuickScene(20.0, 0.0, 0.0, 4.0);
+    scene.ground.kind = GroundCover::Kind::kWater;
+    scene.ground.wind_m_per_s = 0.5;
+    scene.clouds = CloudsFromText("overcast");
+    return scene;
+  }());
+  const Camera camera = CameraFromDegrees({}, 100.0, pitch, 0.0, 4.0);
+  CameraSample camera_sample(kHighSun);
+  camera_sample.poses = {
+      {Place{46.5, 8.0, 20.0}, camera.heading_rad, camera.pitch_rad, 0.0, camera.fov_rad}};
+  const HdrImage image = renderer.Render(camera_sample, kSmallGround);
+  glm::dvec3 sum(0.0);
+  for (int row = 0; row < kSmallGround.height; ++row) {
+    for (int column = 0; column < kSmallGround.width; ++column)
+      sum += glm::dvec3(glm::make_vec3(image.at(column, row).data()));
+  }
+  return sum / (1.0 * kSmallGround.width * kSmallGround.height);
+}
+
+// A clear sky in the mirror would be twice as blue. Waves tilt facets, and water itself sends up to a
+// twentieth of the light that falls on it.
+TEST(GroundLight, WaterMirrorsTheCloudsAboveIt) {
+  const glm::dvec3 sky = UnderStratus(8.0), sea = UnderStratus(-8.0);
+  const double reflected = FresnelReflectance(std::sin(8.0 * kRadiansPerDegree), 1.34);
+  EXPECT_GT(sea.y, 0.8 * reflected * sky.y);
+  EXPECT_LT(sea.y, (1.15 * reflected + 0.05) * sky.y);
+  EXPECT_NEAR((sea.z / sea.x) / (sky.z / sky.x), 1.0, 0.15);
 }
 
 TEST(GroundLight, CoversAreAsBrightAsTheirAlbedos) {
