@@ -234,8 +234,9 @@ struct CloudColumns {
 /// Options of the fast method.
 struct CloudLightOptions {
   CloudSurroundings surroundings;  ///< see there
-  /// Side of the cells of light of higher orders, in [20, 2500]. Errors below hold for 80.
-  double cell_m = 80.0;
+  /// Side of the cells of light of higher orders, in [20, 2500]. Empty: 40 for fields of at most 8
+  /// km by 8 km, and 80 for larger ones. Errors below hold for both.
+  std::optional<double> cell_m = {};
   /// Multiplies light of higher orders by a factor that is fitted to 40000 traced paths, which
   /// reduces the bias of sunlight. Errors below hold with it.
   bool has_fitted_factor = true;

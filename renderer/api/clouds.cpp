@@ -407,20 +407,20 @@ CloudLight::CloudLight(const CloudField& field, const Direction& to_sun,
                        const CloudLightOptions& options) {
   const renderer::CloudField& clouds = field.state_->field;
   const CloudSurroundings& around = Checked(options.surroundings, clouds.base_altitude_m());
-  RequireInRange(options.cell_m, 20.0, 2500.0, "options.cell_m");
+  const double cell_m = RequireInRange(options.cell_m.value_or(renderer::UsualCloudCell_m(clouds)),
+                                       20.0, 2500.0, "options.cell_m");
   const glm::dvec3 sun = CheckedSun(to_sun);
-  State::RequireMemoryFor(clouds, options.cell_m, sun, LowSunOver(around));
+  State::RequireMemoryFor(clouds, cell_m, sun, LowSunOver(around));
   renderer::CloudLightOptions with;
   with.low_sun = LowSunOver(around);
-  with.moments.cell_m = options.cell_m;
+  with.moments.cell_m = cell_m;
   with.sun_map = SunMapFor(clouds);
   if (!options.has_fitted_factor) with.factor.rays = 0;
   const renderer::CloudScatterers scatterers{
       PhasesOf(field.state_->particles, field.state_->g, around.wavelength_nm)};
   const renderer::CloudSurroundings surroundings{sun, around.ground_albedo, around.ground_m};
-  state_ = std::make_shared<const State>(
-      State{field.state_, around, options.cell_m,
-            renderer::CloudLight(clouds, scatterers, surroundings, with)});
+  state_ = std::make_shared<const State>(State{
+      field.state_, around, cell_m, renderer::CloudLight(clouds, scatterers, surroundings, with)});
 }
 
 CloudLight::CloudLight(std::shared_ptr<const State> state) : state_(std::move(state)) {}

@@ -531,6 +531,12 @@ float CloudMoments::Source(const CloudCells::Mixture& mixture,
   return source;
 }
 
+double UsualCloudCell_m(const CloudField& field) {
+  constexpr double kFine_m = 40.0, kCoarse_m = 80.0, kMostFine_m = 8000.0;
+  const glm::dvec3 size_m = field.lattice().size_m();
+  return size_m.x * size_m.y <= kMostFine_m * kMostFine_m ? kFine_m : kCoarse_m;
+}
+
 CloudMomentSolver::CloudMomentSolver(const std::vector<std::shared_ptr<const CloudCells>>& cells,
                                      double extinction_per_m,
                                      std::shared_ptr<const CloudOptics> optics,
@@ -546,10 +552,11 @@ CloudMomentSolver::CloudMomentSolver(const CloudField& field,
                                      std::shared_ptr<const CloudOptics> optics,
                                      const CloudMomentOptions& options)
     : CloudMomentSolver({}, 1.0, std::move(optics), options) {
-  RequireInRange(options.cell_m, 10.0, 2500.0, "the side of cells of light in clouds [m]");
+  const double cell_m = RequireInRange(options.cell_m.value_or(UsualCloudCell_m(field)), 10.0,
+                                       2500.0, "the side of cells of light in clouds [m]");
   for (const double times : {4.0, 2.0, 1.0}) {
     grids_.push_back(std::make_unique<const Grid>(
-        std::make_shared<const CloudCells>(field, times * options.cell_m), 1.0, optics_));
+        std::make_shared<const CloudCells>(field, times * cell_m), 1.0, optics_));
   }
 }
 

@@ -28,6 +28,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "renderer/cloud_light/cloud_cells.h"
@@ -38,10 +39,14 @@
 namespace alpenglow::renderer {
 
 struct CloudMomentOptions {
-  double cell_m = 80.0;     // in [10, 2500]
-  double tolerance = 5e-3;  // of the residual relative to the source, in [1e-6, 0.5]
-  int most_sweeps = 60;     // over all tracks on one grid, >= 1
+  std::optional<double> cell_m = {};  // in [10, 2500]; nothing: UsualCloudCell_m
+  double tolerance = 5e-3;            // of the residual relative to the source, in [1e-6, 0.5]
+  int most_sweeps = 60;               // over all tracks on one grid, >= 1
 };
+
+/// Returns 40 m for a field of at most 8 km by 8 km, and 80 m for a larger one, whose solution
+/// would take more than some seconds.
+[[nodiscard]] double UsualCloudCell_m(const CloudField& field);
 
 /// Moments of light on stored cells. Immutable; safe to use from many threads. Copies share the
 /// cells.

@@ -135,9 +135,10 @@ void PrintPaths(const CloudField& field, const CloudScatterers& scatterers,
     options.method = paths.collisions ? CloudLightMethod::kHybrid : CloudLightMethod::kTraced;
     const Stopwatch time;
     const CloudLight light(field, scatterers, surroundings, options);
-    fmt::print("| {} m, {}, {} collisions, {} paths | {:.2f}, {:.2f} | | |", options.moments.cell_m,
-               NameOf(options.method), paths.collisions ? std::to_string(*paths.collisions) : "all",
-               paths.paths, time.processor_s(), time.wall_s());
+    fmt::print("| {} m, {}, {} collisions, {} paths | {:.2f}, {:.2f} | | |",
+               *options.moments.cell_m, NameOf(options.method),
+               paths.collisions ? std::to_string(*paths.collisions) : "all", paths.paths,
+               time.processor_s(), time.wall_s());
     PrintErrors(light, views, pixels, 1);
   }
 }
