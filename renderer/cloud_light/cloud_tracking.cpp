@@ -26,17 +26,12 @@ double CloudTracker::OpticalDepth(const CloudRay& ray, double farthest_m, double
 std::optional<double> CloudTracker::DistanceAt(const CloudRay& ray, double depth,
                                                double step_m) const {
   std::optional<double> found;
-  EachSpan(ray, kFarthestCloud_m, [&](double begin_m, double end_m, double) {
-    const double steps = std::ceil((end_m - begin_m) / step_m);
-    const double length_m = (end_m - begin_m) / steps;
-    for (double i = 0.0; i < steps; ++i) {
-      const double per_m = Extinction_per_m(ray.At(begin_m + (i + 0.5) * length_m));
-      if (depth < per_m * length_m) {
-        found = begin_m + i * length_m + depth / per_m;
-        return false;
-      }
-      depth -= per_m * length_m;
+  EachStep(ray, kFarthestCloud_m, step_m, [&](double begin_m, double length_m, double per_m) {
+    if (depth < per_m * length_m) {
+      found = begin_m + depth / per_m;
+      return false;
     }
+    depth -= per_m * length_m;
     return true;
   });
   return found;
@@ -45,16 +40,10 @@ std::optional<double> CloudTracker::DistanceAt(const CloudRay& ray, double depth
 CloudDepths::CloudDepths(const CloudTracker& tracker, const CloudRay& ray, double length_m,
                          double step_m) {
   double depth = 0.0;
-  tracker.EachSpan(ray, length_m, [&](double begin_m, double end_m, double) {
-    const double steps = std::ceil((end_m - begin_m) / step_m);
-    const double each_m = (end_m - begin_m) / steps;
-    for (double i = 0.0; i < steps && depth < kDeepest; ++i) {
-      const double from_m = begin_m + i * each_m;
-      const double per_m = tracker.Extinction_per_m(ray.At(from_m + 0.5 * each_m));
-      if (per_m <= 0.0) continue;
-      depth += each_m * per_m;
-      nodes_.push_back({from_m, from_m + each_m, depth});
-    }
+  tracker.EachStep(ray, length_m, step_m, [&](double begin_m, double each_m, double per_m) {
+    if (per_m <= 0.0) return true;
+    depth += each_m * per_m;
+    nodes_.push_back({begin_m, begin_m + each_m, depth});
     return depth < kDeepest;
   });
 }

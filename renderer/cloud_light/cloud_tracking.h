@@ -22,6 +22,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase.h"
 #include "renderer/clouds/cloud_field.h"
+#include "renderer/clouds/cloud_line.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -86,7 +87,7 @@ class CloudTracker {
   [[nodiscard]] double OpticalDepth(const CloudRay& ray, double farthest_m, double step_m) const;
 
   /// Returns the distance at which the ray has an optical depth, by the rule of the middle on steps of
-  /// at most `step_m`; no value if it has less.
+  /// `step_m`; no value if it has less.
   [[nodiscard]] std::optional<double> DistanceAt(const CloudRay& ray, double depth,
                                                  double step_m) const;
 
@@ -94,8 +95,7 @@ class CloudTracker {
   /// until it returns false.
   template <typename Visit>
   void EachSpan(const CloudRay& ray, double farthest_m, const Visit& visit) const {
-    double at_m = 0.0, end_m = std::min(farthest_m, kFarthestCloud_m);
-    for (int axis = is_periodic_ ? 2 : 0; axis < 3; ++axis) Clip(ray, axis, at_m, end_m);
+    auto [at_m, end_m] = StretchOf(ray, farthest_m);
     while (at_m < end_m) {
       const CloudSpan span = field_->SpanAhead(ray.At(at_m), ray.direction);
       const double next_m = std::min(at_m + span.length_m, end_m);
@@ -104,9 +104,49 @@ class CloudTracker {
     }
   }
 
+  /// Calls visit(begin_m, length_m, extinction_per_m) for steps along a ray, in order, until it returns
+  /// false. The extinction is that in their middles. Stretches without cloud have no steps.
+  /// @param step_m  the length of all steps but those at ends.
+  template <typename Visit>
+  void EachStep(const CloudRay& ray, double farthest_m, double step_m, const Visit& visit) const {
+    if (uses_detail_) {  // it makes clouds wider than the cubes that a line takes for filled
+      EachSpan(ray, farthest_m, [&](double begin_m, double end_m, double) {
+        for (double at_m = begin_m; at_m < end_m; at_m += step_m) {
+          const double length_m = std::min(step_m, end_m - at_m);
+          if (!visit(at_m, length_m, Extinction_per_m(ray.At(at_m + 0.5 * length_m)))) return false;
+        }
+        return true;
+      });
+      return;
+    }
+    auto [at_m, end_m] = StretchOf(ray, farthest_m);
+    CloudField::Line line(*field_, ray.origin, ray.direction);
+    bool was_clear = true;
+    while (at_m < end_m) {
+      const double clear_m = was_clear ? line.ClearAhead_m(at_m) : 0.0;
+      at_m += clear_m;
+      if (clear_m > 0.0) continue;
+      const double length_m = std::min(step_m, end_m - at_m);
+      const double per_m = scale_ * line.At(at_m + 0.5 * length_m).extinction_per_m;
+      if (!visit(at_m, length_m, per_m)) return;
+      was_clear = per_m <= 0.0;
+      at_m += length_m;
+    }
+  }
+
  private:
   static constexpr double kLeastFollowed = 0.1;
 
+  /// The part of a ray between the altitudes of clouds, or in their box.
+  struct Stretch {
+    double begin_m, end_m;
+  };
+  [[nodiscard]] Stretch StretchOf(const CloudRay& ray, double farthest_m) const {
+    Stretch stretch{0.0, std::min(farthest_m, kFarthestCloud_m)};
+    for (int axis = is_periodic_ ? 2 : 0; axis < 3; ++axis)
+      Clip(ray, axis, stretch.begin_m, stretch.end_m);
+    return stretch;
+  }
   /// Shortens the stretch from at_m to end_m to the part between the bounds along an axis.
   void Clip(const CloudRay& ray, int axis, double& at_m, double& end_m) const {
     const double below_m = bounds_.low[axis] - ray.origin[axis];
