@@ -284,6 +284,9 @@ const CloudGroundIrradiance& CloudLight::ground_irradiance() const {
 }
 const CloudField& CloudLight::field() const { return *field_light_->field; }
 const CloudOptics& CloudLight::optics() const { return *field_light_->optics; }
+const PlaneParallelCloud* CloudLight::plane_parallel() const {
+  return field_light_->plane_parallel.get();
+}
 const CloudSunDepths& CloudLight::sun() const { return sun_light_->depths; }
 const CloudFactor& CloudLight::factor() const { return sun_light_->factor; }
 double CloudLight::ground_albedo() const { return field_light_->ground_albedo; }

@@ -38,6 +38,8 @@
 
 namespace alpenglow::renderer {
 
+class PlaneParallelCloud;
+
 /// The method by which light of sun, sky and ground is found along a ray: the moments alone, paths that
 /// end in them, or paths alone. Paths have noise, which the mean over the rays of a pixel reduces. The
 /// hybrid method fits a factor of its own, for light that paths see after their collisions.
@@ -145,6 +147,8 @@ class CloudLight {
   [[nodiscard]] CloudGroundDifference GroundDifferenceAt(const glm::dvec3& point) const;
   [[nodiscard]] const CloudField& field() const;
   [[nodiscard]] const CloudOptics& optics() const;
+  /// Returns the layer of a field that is the same at every place; null for others.
+  [[nodiscard]] const PlaneParallelCloud* plane_parallel() const;
   [[nodiscard]] const CloudSunDepths& sun() const;
   [[nodiscard]] const CloudFactor& factor() const;
   [[nodiscard]] double ground_albedo() const;

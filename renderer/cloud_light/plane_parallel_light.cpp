@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 #include <utility>
 
 #include "atmosphere/math/numerics.h"
@@ -22,12 +20,6 @@ constexpr double kOpaqueDepth = 40.0;
 double MeanDepth(double depth) {
   if (depth < 1e-3) return 0.5 * depth;
   return 1.0 - depth * std::exp(-depth) / -std::expm1(-depth);
-}
-
-/// Returns the azimuth of light that comes to an eye along a ray, from that of the sun's beam.
-double AzimuthBetween(const CloudRay& ray, const glm::dvec3& to_sun) {
-  const glm::dvec2 a(ray.direction), b(to_sun);
-  return std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
 }
 
 }  // namespace
@@ -151,7 +143,7 @@ double PlaneParallelSun::SunAlong(const CloudRay& ray,
     lit.to = cloud_->depths().whole() - crossing.to;
     mu = -mu;
   }
-  const LightWay way{mu, AzimuthBetween(ray, to_sun_)};
+  const LightWay way{mu, AzimuthFromBeam(ray.direction, to_sun_)};
   const double left = std::exp(-lit.scaled);
   const double behind = left > 0.0 ? left * field_.RadianceOfHigherOrders(lit.to, way) : 0.0;
   const double higher = std::max(field_.RadianceOfHigherOrders(lit.from, way) - behind, 0.0);

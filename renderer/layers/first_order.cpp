@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstddef>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "atmosphere/math/numerics.h"
 #include "renderer/layers/peak_series.h"
@@ -100,6 +102,11 @@ class SunlitLine {
 };
 
 }  // namespace
+
+double AzimuthFromBeam(const glm::dvec3& ray, const glm::dvec3& to_sun) {
+  const glm::dvec2 a(ray), b(to_sun);
+  return std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
+}
 
 double SunScatteredOnce(const LayerStack& stack, double mu_s, const std::vector<LineSegment>& line,
                         const LightWay& way) {

@@ -8,6 +8,7 @@
 // that they send.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "renderer/layer.h"
@@ -21,6 +22,10 @@ struct LightWay {
   double mu;       // cosine to the vertical, > 0 upwards
   double azimuth;  // from that in which the sun's beam travels [rad]
 };
+
+/// Returns the azimuth of light that comes to an eye along a ray. The vertical is the z axis.
+/// @param ray  direction from the eye. @param to_sun  likewise.
+[[nodiscard]] double AzimuthFromBeam(const glm::dvec3& ray, const glm::dvec3& to_sun);
 
 /// Returns the radiance per unit irradiance across the beam [1/sr].
 /// @param mu_s  cosine of the sun's zenith angle, in (0, 1]. @param line  of way.mu, never 0.

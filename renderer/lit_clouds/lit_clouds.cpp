@@ -9,8 +9,9 @@
 
 #include "atmosphere/math/constants.h"
 #include "renderer/cloud_light/cloud_plane_rays.h"
+#include "renderer/cloud_light/plane_parallel_light.h"
 #include "renderer/illumination/sky_moments.h"
-#include "renderer/lit_clouds/air_reflection.h"
+#include "renderer/lit_clouds/air_layers.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -126,13 +127,16 @@ LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeom
   double highest_m = 0.0;
   for (std::size_t i = 0; i < layers(); ++i) {
     // The depths live as long as the solution.
-    peak_scale_.push_back(Layer(i).optics().extinction_scale());
+    const PlaneParallelCloud* plane = Layer(i).plane_parallel();
+    peak_scale_.push_back(plane != nullptr ? plane->stack().scaled(0).scale
+                                           : Layer(i).optics().extinction_scale());
     suns.push_back({{clouds_, &Layer(i).sun()}, peak_scale_.back()});
     along_rays_.push_back(Layer(i).WithMethod(view.method, paths));
     highest_m = std::max(highest_m, RangeOf(i).high_m);
   }
   shadow_ = std::make_shared<const CloudShadow>(std::move(suns), highest_m, geometry.radius_m());
   FindExchange();
+  FindLayered();
   if (view.mirror) {
     mirror_.emplace(*view.mirror, [this](const glm::dvec3& point, const glm::dvec3& direction) {
       return ChangeAlong(point, direction);
@@ -189,7 +193,7 @@ std::vector<CloudLayerFluxes> LitClouds::LitBy(const std::vector<Spectrum>& beam
 void LitClouds::FindExchange() {
   const std::size_t bands = air_.bands();
   for (std::size_t i = 0; i < layers(); ++i) {
-    beams_.push_back(MeanBeam(MiddleOf(i), i));
+    beams_.push_back(MeanBeam(BeamAltitudeOf(i, MiddleOf(i)), i));
     sky_on_clouds_.push_back(SkyOnClouds(i));
     beam_left_.push_back(static_cast<float>(MeanBeamLeft(MiddleOf(i), i)));
     sky_past_.push_back(static_cast<float>(FluxesOf(Layer(i)).sky_down));
@@ -242,6 +246,50 @@ void LitClouds::FindExchange() {
   }
 }
 
+// Below kLowestFull the light of beams that pass under clouds of a round planet counts more and more.
+void LitClouds::FindLayered() {
+  constexpr double kLowestFull = 0.05;
+  const LocalLight sun = LocalLightAt(geometry_, {0.0, 0.0, 0.0}, light_);
+  if (!(sun.visible_fraction > 0.0 && sun.mu_s_effective > 0.0)) return;
+  std::vector<LayeredCloud> clouds;
+  for (std::size_t i = 0; i < layers(); ++i) {
+    const PlaneParallelCloud* plane = Layer(i).plane_parallel();
+    if (plane == nullptr) return;
+    clouds.push_back(
+        {{plane->depths().base_m(), plane->depths().top_m()}, plane->stack().optics(0)});
+  }
+  if (clouds.empty()) return;
+  layered_.emplace(air_.medium(), clouds, SunOverLayers(air_, sun.mu_s_effective));
+  layered_share_ = static_cast<float>(std::min(sun.mu_s_effective / kLowestFull, 1.0));
+  const Spectrum clear = air_.multiple_scattering().Irradiance(0.0, sun.mu_s_for_air, 1.0, 1.0);
+  const Spectrum change = layered_->ChangeAt(0.0).down;
+  const auto sine = static_cast<float>(sun.mu_s_effective);
+  const Spectrum direct = sine * MeanBeam(0.0, layers());
+  const Spectrum clear_direct =
+      sine * static_cast<float>(sun.visible_fraction) * air_.BeamLeft(0.0, sun.mu_s_effective);
+  Spectrum left = left_on_ground_;
+  for (std::size_t band = 0; band < left.size(); ++band) {
+    const float before = clear[band] + clear_direct[band];
+    const float now = std::max(clear[band] + change[band], 0.0F) + direct[band];
+    if (before > 0.0F) left[band] = now / before;
+  }
+  left_on_ground_ = Blended(left_on_ground_, left);
+}
+
+Spectrum LitClouds::Blended(const Spectrum& by_exchange, const Spectrum& together) const {
+  return (1.0F - layered_share_) * by_exchange + layered_share_ * together;
+}
+
+Spectrum LitClouds::AddedAt(std::size_t interface, double altitude_m) const {
+  if (!layered_) return added_[interface];
+  const LocalLight sun = LocalLightAt(geometry_, {0.0, 0.0, altitude_m}, light_);
+  const Spectrum clear =
+      air_.multiple_scattering().Irradiance(altitude_m, sun.mu_s_for_air, 1.0, 1.0);
+  Spectrum added = (1.0F - air_left_[interface]) * clear + layered_->ChangeAt(altitude_m).down;
+  for (float& value : added.values()) value = std::max(value, 0.0F);
+  return Blended(added_[interface], added);
+}
+
 void LitClouds::FindTurned() {
   for (std::size_t i = 0; i <= layers(); ++i) {
     const double altitude_m = AltitudeOf(i);
@@ -266,7 +314,7 @@ std::size_t LitClouds::InterfaceAt(double altitude_m) const {
 
 std::vector<DiffuseStretch> LitClouds::DiffuseInAir(const glm::dvec3& origin,
                                                     const glm::dvec3& direction) const {
-  constexpr double kEndless_m = std::numeric_limits<double>::infinity(), kBeyond_m = 1000.0;
+  constexpr double kEndless_m = std::numeric_limits<double>::infinity();
   const double radius_m = geometry_.radius_m();
   const bool falls = glm::dot(direction, geometry_.UpAt(origin)) < 0.0;
   const auto grounds = CrossingsOf(0.0, origin, direction, kEndless_m, radius_m);
@@ -280,17 +328,37 @@ std::vector<DiffuseStretch> LitClouds::DiffuseInAir(const glm::dvec3& origin,
   std::vector<DiffuseStretch> stretches;
   double begin_m = 0.0;
   for (const double end_m : ends_m) {
-    const double within_m = end_m < kEndless_m ? 0.5 * (begin_m + end_m) : begin_m + kBeyond_m;
-    const double altitude_m = geometry_.AltitudeOf(origin + within_m * direction);
-    stretches.push_back({end_m, diffuse_[InterfaceAt(altitude_m)]});
+    stretches.push_back(
+        {end_m, DiffuseOn({begin_m, std::min(end_m, length_m)}, origin, direction)});
     begin_m = end_m;
   }
   return stretches;
 }
 
+Spectrum LitClouds::DiffuseOn(const Distances& part, const glm::dvec3& origin,
+                              const glm::dvec3& direction) const {
+  constexpr double kBeyond_m = 1000.0;
+  const bool is_endless = std::isinf(part.end_m);
+  const glm::dvec3 middle =
+      origin +
+      (is_endless ? part.begin_m + kBeyond_m : 0.5 * (part.begin_m + part.end_m)) * direction;
+  const double altitude_m = geometry_.AltitudeOf(middle);
+  const Spectrum& even = diffuse_[InterfaceAt(altitude_m)];
+  if (!layered_) return even;
+  const auto altitude_at = [&](double distance_m) {
+    return std::isinf(distance_m) ? distance_m
+                                  : geometry_.AltitudeOf(origin + distance_m * direction);
+  };
+  const auto [low_m, high_m] =
+      std::minmax({altitude_m, altitude_at(part.begin_m), altitude_at(part.end_m)});
+  const double up = glm::dot(geometry_.UpAt(middle), direction);
+  const LightWay way{-up, AzimuthFromBeam(direction, light_.direction.for_air)};
+  return Blended(even, layered_->FactorTowards({low_m, high_m}, way));
+}
+
 LightPastClouds LitClouds::MeanAt(double altitude_m) const {
   const std::size_t interface = InterfaceAt(altitude_m);
-  Spectrum added = added_[interface];
+  Spectrum added = AddedAt(interface, altitude_m);
   for (std::size_t band = 0; band < added.size(); ++band)
     added[band] = std::max(added[band] - turned_[interface][band], 0.0F);
   return {{Spectrum(added.size(), air_left_[interface]), added},
@@ -299,7 +367,8 @@ LightPastClouds LitClouds::MeanAt(double altitude_m) const {
 }
 
 SkyThroughMedia LitClouds::SkyAt(std::size_t interface, const glm::dvec3& point) const {
-  SkyThroughMedia sky{Spectrum(air_.bands(), air_left_[interface]), added_[interface]};
+  SkyThroughMedia sky{Spectrum(air_.bands(), air_left_[interface]),
+                      AddedAt(interface, geometry_.AltitudeOf(point))};
   if (interface == layers()) return sky;
   const glm::dvec3 flat = InFlatFrame(point, geometry_.radius_m());
   float past_lower = 1.0F, past_all = 1.0F;
@@ -384,15 +453,36 @@ LitClouds::LightAround LitClouds::AroundLayer(std::size_t layer, const LocalLigh
     sky = std::max(sky + kToRadiance * beam_left_[layer] * from_above[band], 0.0F);
     ground = std::max(ground + kToRadiance * left_on_ground_[band] * from_below[band], 0.0F);
   }
-  return around;
+  if (!layered_) return around;
+  const auto [low_m, high_m] = RangeOf(layer);
+  const Spectrum change_above = layered_->ChangeAt(high_m).down;
+  const Spectrum change_below = layered_->ChangeAt(low_m).up;
+  const Spectrum clear_above = level(high_m, 1.0), clear_below = level(low_m, -1.0);
+  LightAround together = around;
+  for (std::size_t band = 0; band < around.sky.size(); ++band) {
+    const float uneven = beam_left_[layer] * (sky_on_clouds_[layer][band] - 1.0F);
+    const float above = (1.0F + uneven) * clear_above[band] + change_above[band];
+    together.sky[band] = kToRadiance * std::max(above, 0.0F);
+    together.ground[band] = kToRadiance * std::max(clear_below[band] + change_below[band], 0.0F);
+  }
+  return {Blended(around.sky, together.sky), Blended(around.ground, together.ground)};
+}
+
+// A plane-parallel layer takes the beam where it enters.
+double LitClouds::BeamAltitudeOf(std::size_t layer, double altitude_m) const {
+  if (Layer(layer).plane_parallel() == nullptr) return altitude_m;
+  return Layer(layer).sun().to_sun().z < 0.0 ? RangeOf(layer).low_m : RangeOf(layer).high_m;
 }
 
 CloudScreen LitClouds::Screen(const CloudRayPart& grey, const glm::dvec3& point) const {
   const LocalLight sun = LocalLightAt(geometry_, point, light_);
+  const double beam_m = BeamAltitudeOf(grey.layer, sun.altitude_m);
+  const glm::dvec3 entry = point + (beam_m - sun.altitude_m) * sun.up;
+  const LocalLight at_entry = LocalLightAt(geometry_, entry, light_);
   const double past = PastOthers(grey.layer, InFlatFrame(point, geometry_.radius_m())) *
                       (past_terrain_ ? past_terrain_->At(point) : 1.0);
-  const Spectrum beam = static_cast<float>(past * sun.visible_fraction) *
-                        air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
+  const Spectrum beam = static_cast<float>(past * at_entry.visible_fraction) *
+                        air_.BeamLeft(at_entry.altitude_m, at_entry.mu_s_effective);
   const LightAround around = AroundLayer(grey.layer, sun);
   const auto [from_sun, from_sky, from_ground] = grey.light;
   return {grey.distance_m, static_cast<float>(grey.scaled_transmittance),

@@ -9,7 +9,9 @@
 //   L += T_i A (E_beam sun_i + L_sky sky_i + L_ground ground_i)
 //
 // Skylight is found above all clouds, and light from below on the ground. The air between these and a
-// cloud adds what it adds in a clear sky, times the mean fraction of light that reaches it. On the
+// cloud adds what it adds in a clear sky, times the mean fraction of light that reaches it. If all
+// layers are the same at every place, they are solved together with the air instead, in every direction
+// (layered_air.h); below a sun of 3 degrees that goes over into what follows. On the
 // ground that is the fraction of the beam with what clouds turn by a few degrees: air sends light of the
 // beam down, but of diffuse light it takes away nearly as much as it adds. Fields of
 // single clouds take more light from the bright sky near the horizon than from the zenith. Their sky
@@ -37,8 +39,8 @@
 //
 // Not modelled:
 //
-//   - skylight and light from the ground that differ with direction or place, where they light clouds
-//     and air;
+//   - skylight and light from the ground that differ with direction or place, where they light clouds,
+//     and air beside single clouds;
 //   - lamplight that the ground reflects to clouds, and the air between clouds and towns of light
 //     pollution (NightAlong);
 //   - light that passes within clouds from their sunlit parts into those in the shadow of a mountain,
@@ -63,6 +65,7 @@
 #include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/lit_clouds/cloud_shadow.h"
 #include "renderer/lit_clouds/layer_exchange.h"
+#include "renderer/lit_clouds/layered_air.h"
 #include "renderer/lit_clouds/mirrored_clouds.h"
 #include "renderer/lit_clouds/shared_cloud_light.h"
 #include "renderer/media/lit_medium.h"
@@ -204,7 +207,16 @@ class LitClouds {
                                      const glm::dvec3& origin, const glm::dvec3& direction) const;
   /// Returns what clouds change in the light of a clear sky along a ray.
   [[nodiscard]] CloudChange ChangeAlong(const glm::dvec3& point, const glm::dvec3& direction) const;
+  /// A part of a ray, as distances.
+  struct Distances {
+    double begin_m, end_m;
+  };
+  /// Returns the factor of a DiffuseStretch.
+  [[nodiscard]] Spectrum DiffuseOn(const Distances& part, const glm::dvec3& origin,
+                                   const glm::dvec3& direction) const;
   void FindExchange();
+  /// Solves plane-parallel layers together with the air, if all are and the sun is up.
+  void FindLayered();
   /// Finds the light that layers turn by a few degrees, at each interface.
   void FindTurned();
   /// Returns the fluxes of each layer in beams. What a layer takes away from a clear sky in addition to
@@ -221,6 +233,8 @@ class LitClouds {
   [[nodiscard]] double MeanScaledLeft(double altitude_m) const;
   /// Returns an altitude at an interface.
   [[nodiscard]] double AltitudeOf(std::size_t interface) const;
+  /// Returns the altitude at which a layer takes the beam for its light at an altitude.
+  [[nodiscard]] double BeamAltitudeOf(std::size_t layer, double altitude_m) const;
   [[nodiscard]] CloudScreen Screen(const CloudRayPart& grey, const glm::dvec3& point) const;
   /// Returns the mean radiance of a clear sky along rays through a layer, weighted by what the layer
   /// takes away, relative to that of an even sky with the same irradiance of a level surface.
@@ -231,6 +245,10 @@ class LitClouds {
   };
   /// Returns the mean light from above and from below in a layer. @param sun  at a place in it.
   [[nodiscard]] LightAround AroundLayer(std::size_t layer, const LocalLight& sun) const;
+  /// Returns what layers add to the light of the sky on level ground, where they leave air_left_ of it.
+  [[nodiscard]] Spectrum AddedAt(std::size_t interface, double altitude_m) const;
+  /// Returns a mean of light by exchange and of light that is solved together with the air.
+  [[nodiscard]] Spectrum Blended(const Spectrum& by_exchange, const Spectrum& together) const;
   /// Returns the transmittance to the light of the layers other than one.
   [[nodiscard]] double PastOthers(std::size_t layer, const glm::dvec3& flat_point) const;
 
@@ -265,9 +283,11 @@ class LitClouds {
   std::vector<float> air_left_;
   std::vector<Spectrum> added_, turned_;
   Spectrum sky_on_top_;  // irradiance of a clear sky above all layers, per unit solar irradiance
-  std::vector<Spectrum> beams_;    // mean ones on each layer, per unit solar irradiance
-  std::vector<float> sky_past_;    // transmittance of each layer for skylight
-  std::vector<Spectrum> diffuse_;  // factor in the air at each interface
+  std::vector<Spectrum> beams_;        // mean ones on each layer, per unit solar irradiance
+  std::vector<float> sky_past_;        // transmittance of each layer for skylight
+  std::vector<Spectrum> diffuse_;      // factor in the air at each interface
+  std::optional<LayeredAir> layered_;  // together with the air, if all layers are plane-parallel
+  float layered_share_ = 0.0F;         // in the light of layers
   std::optional<MirroredClouds> mirror_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/lit_clouds/air_reflection.h"
+#include "renderer/lit_clouds/air_layers.h"
 
 #include <gtest/gtest.h>
 
