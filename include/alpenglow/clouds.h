@@ -165,8 +165,9 @@ struct CloudSurroundings {
   double ground_m = 0.0;       ///< altitude of the ground, in [-1e5, CloudField::base_m()]
   /// Radius of the planet, in [1e5, 1e9]. Beams of a sun below 3 degrees curve over it, in the flat
   /// frame: the sun is higher by 1/radius for each metre towards it. Its direction is that over the
-  /// origin. Clouds further away than 60 km shade others less and less, and none beyond 180 km do. The
-  /// ground does not hide the sun.
+  /// origin. Clouds further away than 60 km shade others less and less, and none beyond 180 km do; high
+  /// clouds shade up to where a sun of 3 degrees is seen past them, and none 120 km further. The ground
+  /// does not hide the sun.
   double planet_radius_m = 6.371e6;
 };
 

@@ -235,13 +235,6 @@ void RequireSunOfFluxes(const glm::dvec3& to_sun) {
                    "the elevation of to_sun for fluxes [degrees]");
 }
 
-/// Returns the beams of pictures (renderer/lit_clouds).
-renderer::CloudLowSunOptions LowSunOver(const CloudSurroundings& surroundings) {
-  return {.planet_radius_m = surroundings.planet_radius_m,
-          .farthest_m = renderer::kFarthestCloudShade_m,
-          .full_m = renderer::kFullCloudShade_m};
-}
-
 const CloudSurroundings& Checked(const CloudSurroundings& surroundings, double base_m) {
   RequireInRange(surroundings.wavelength_nm, 300.0, 1000.0, "surroundings.wavelength_nm");
   RequireInRange(surroundings.ground_albedo, 0.0, 1.0, "surroundings.ground_albedo");
@@ -391,7 +384,8 @@ struct CloudLight::State {
   renderer::CloudLight light;
 
   void RequireMemoryFor(const glm::dvec3& to_sun) const {
-    RequireMemoryFor(field->field, cell_m, to_sun, LowSunOver(surroundings));
+    RequireMemoryFor(field->field, cell_m, to_sun,
+                     renderer::LowSunOver(field->field, surroundings.planet_radius_m));
   }
   static void RequireMemoryFor(const renderer::CloudField& field, double cell_m,
                                const glm::dvec3& to_sun,
@@ -410,9 +404,10 @@ CloudLight::CloudLight(const CloudField& field, const Direction& to_sun,
   const double cell_m = RequireInRange(options.cell_m.value_or(renderer::UsualCloudCell_m(clouds)),
                                        20.0, 2500.0, "options.cell_m");
   const glm::dvec3 sun = CheckedSun(to_sun);
-  State::RequireMemoryFor(clouds, cell_m, sun, LowSunOver(around));
+  State::RequireMemoryFor(clouds, cell_m, sun,
+                          renderer::LowSunOver(clouds, around.planet_radius_m));
   renderer::CloudLightOptions with;
-  with.low_sun = LowSunOver(around);
+  with.low_sun = renderer::LowSunOver(clouds, around.planet_radius_m);
   with.moments.cell_m = cell_m;
   with.sun_map = SunMapFor(clouds);
   if (!options.has_fitted_factor) with.factor.rays = 0;
@@ -498,7 +493,8 @@ CloudPaths::CloudPaths(const CloudField& field, const Direction& to_sun,
   const glm::dvec3 sun = CheckedSun(to_sun);
   std::shared_ptr<const renderer::CloudLowSun> low_sun;
   if (renderer::IsLowCloudSun(sun))
-    low_sun = std::make_shared<const renderer::CloudLowSun>(clouds, sun, LowSunOver(around));
+    low_sun = std::make_shared<const renderer::CloudLowSun>(
+        clouds, sun, renderer::LowSunOver(clouds, around.planet_radius_m));
   renderer::CloudPathTracer tracer(
       clouds, {PhasesOf(field.state_->particles, field.state_->g, around.wavelength_nm)},
       {sun, around.ground_albedo, around.ground_m, low_sun.get()});

@@ -20,15 +20,17 @@ constexpr std::size_t kKept = 4;
 /// Refraction of a beam that grazes the planet, before and after it does, and the radius of the sun.
 constexpr double kMostRefracted_deg = 1.5;
 
-CloudLightOptions LightOptions(double planet_radius_m) {
-  CloudLightOptions options;
-  options.low_sun.planet_radius_m = planet_radius_m;
-  options.low_sun.farthest_m = kFarthestCloudShade_m;
-  options.low_sun.full_m = kFullCloudShade_m;
+}  // namespace
+
+CloudLowSunOptions LowSunOver(const CloudField& field, double planet_radius_m) {
+  constexpr double kFull_m = 60e3, kFading_m = 120e3, kMostFull_m = 280e3;
+  const double to_top_m =
+      field.top_altitude_m() / std::tan(kLowestCloudSun_deg * kRadiansPerDegree);
+  CloudLowSunOptions options{.planet_radius_m = planet_radius_m};
+  options.full_m = std::clamp(to_top_m, kFull_m, kMostFull_m);
+  options.farthest_m = options.full_m + kFading_m;
   return options;
 }
-
-}  // namespace
 
 CloudPhases PhasesOf(const SceneCloudField& layer) {
   return layer.is_of_ice ? IcePhases(kPhase_nm) : DropletPhases(kPhase_nm);
@@ -69,7 +71,7 @@ SolvedClouds CloudsByTime::Solved(double time_s, const Light& light) const {
         .to_sun = beam.value_or(glm::dvec3(0.0, 0.0, 1.0)),
         .ground_altitude_m = std::min(ground_m_, layer.field.base_altitude_m())};
     const CloudScatterers scatterers{PhasesOf(layer)};
-    const CloudLightOptions options = LightOptions(radius_m_);
+    const CloudLightOptions options{.low_sun = LowSunOver(layer.field, radius_m_)};
     solved.light.push_back(beam
                                ? CloudLight(layer.field, scatterers, surroundings, options)
                                : CloudLight::Unlit(layer.field, scatterers, surroundings, options));

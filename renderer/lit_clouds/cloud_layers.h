@@ -30,10 +30,11 @@ struct SolvedClouds {
   std::vector<CloudLight> light;  // of each layer, over black ground
 };
 
-/// Towards a sun below kLowestCloudSun_deg, clouds up to the first distance shade others in full, and
-/// those beyond the second one not at all. A layer that went on without end would never be lit from
-/// below.
-inline constexpr double kFullCloudShade_m = 60e3, kFarthestCloudShade_m = 180e3;
+/// Returns how far clouds of a field shade others and the ground towards a sun below
+/// kLowestCloudSun_deg. They do so in full up to 60 km, or up to where a sun of that height is seen past
+/// the top of high clouds, and not at all from 120 km further on. A layer that went on without end would
+/// never be lit from below.
+[[nodiscard]] CloudLowSunOptions LowSunOver(const CloudField& field, double planet_radius_m);
 
 /// Generates and solves the clouds of a scene on demand, and keeps the last solutions: a frame of a
 /// series is metered in a small picture while the frame before it is developed, and the choice of

@@ -28,7 +28,7 @@
 // all directions I'. Light of clouds and ground counts as even over a hemisphere, and the directions
 // of the light that is scattered are those of the clear sky.
 //
-// A sun below 3 degrees stands over a round planet: its beams are followed for kFarthestCloudShade_m,
+// A sun below 3 degrees stands over a round planet: its beams are followed for 180 km or more,
 // clouds see it longer than the ground, and light from below lights them. Light of higher orders is
 // that of the sun's height over the place of the scene.
 //
@@ -45,7 +45,7 @@
 //     pollution (NightAlong);
 //   - light that passes within clouds from their sunlit parts into those in the shadow of a mountain,
 //     and the shadow's edge within one screen;
-//   - clouds more than kFarthestCloudShade_m away towards a low sun.
+//   - clouds further away than that towards a low sun (LowSunOver).
 #pragma once
 
 #include <cstddef>

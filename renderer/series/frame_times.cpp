@@ -27,12 +27,12 @@ struct Conversion {
 };
 
 Conversion ConversionAt(const std::string& pattern, std::size_t at) {
-  constexpr int kWidest = 19;
+  constexpr int kMostDigits = 19;
   Conversion conversion;
   std::size_t i = at;
   for (; i < pattern.size() && pattern[i] >= '0' && pattern[i] <= '9'; ++i) {
     conversion.width = 10 * conversion.width + (pattern[i] - '0');
-    if (conversion.width > kWidest) Refuse(pattern, "the frame number is too wide");
+    if (conversion.width > kMostDigits) Refuse(pattern, "the frame number is too wide");
   }
   if (i >= pattern.size() || pattern[i] != 'd') {
     Refuse(pattern, "the frame number is written %d or %04d, a per cent sign %%");

@@ -61,7 +61,7 @@ void RunStudy(const std::string& genus, double sun_deg, double period_km) {
   CloudOptions options = DefaultCloudOptions(CloudGenusNamed(genus));
   options.period_m = 1000.0 * period_km;
   const CloudField field = MakeCloudField(options);
-  CloudLowSunOptions of_pictures{.farthest_m = kFarthestCloudShade_m, .full_m = kFullCloudShade_m};
+  const CloudLowSunOptions of_pictures = LowSunOver(field, CloudLowSunOptions().planet_radius_m);
   CloudLowSunOptions in_short_steps = of_pictures;
   in_short_steps.step_m = 5.0;
   const glm::dvec3 to_sun = TowardsAzimuth(20.0, sun_deg);

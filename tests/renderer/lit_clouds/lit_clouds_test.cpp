@@ -40,7 +40,7 @@ struct CloudStage {
           auto solved = std::make_shared<SolvedClouds>();
           CloudLightOptions options;
           options.factor.rays = 0;
-          options.low_sun.farthest_m = kFarthestCloudShade_m;
+          options.low_sun = LowSunOver(layers->front().field, geometry.radius_m());
           solved->light.emplace_back(
               layers->front().field, CloudScatterers{CloudPhases(tests::LobeOf(0.8))},
               CloudSurroundings{.to_sun = to_sun.z >= kLowestCloudSine ? to_sun : kVertical,
@@ -240,6 +240,14 @@ TEST(LitClouds, LightIsContinuousAtTheLowestSunOfAMap) {
   const Spectrum by_map = GlowOfSpheres(map), by_beams = GlowOfSpheres(beams);
   for (std::size_t band = 0; band < by_map.size(); ++band)
     EXPECT_NEAR(by_map[band] / by_beams[band], 1.0F, 0.03F) << "cells of the map are 20 m wide";
+}
+
+// Fixed on 2026-11-30: the sun shone past a closed layer at 8 km as soon as it was below 3 degrees.
+TEST(LitClouds, HighDecksHideASunBelowThreeDegrees) {
+  const CloudField deck = tests::PlaneLayer(4.0, 7500.0);
+  const CloudLowSun beams(deck, SunOverClouds(2.7), LowSunOver(deck, 6.371e6));
+  EXPECT_GT(beams.OpticalDepth({0.0, 0.0, 0.0}), 20.0) << "the layer is crossed at a flat angle";
+  EXPECT_EQ(LowSunOver(tests::PlaneLayer(4.0), 6.371e6).full_m, 60e3);
 }
 
 /// Mean light on level ground.
