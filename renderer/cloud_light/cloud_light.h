@@ -13,7 +13,7 @@
 // from all sides is an equilibrium, so that the part of the ground is that of the rest.
 //
 // In the fast method light of first collisions and of the forward peak is in closed form, with the
-// extinction of voxels (cloud_gather.h). Light of higher orders comes from moments on cells of 80 m
+// extinction of voxels (cloud_gather.h). Light of higher orders comes from moments on cells of 40 or 80 m
 // (cloud_moments.h), times a factor that is fitted to traced paths (cloud_factor.h). A field that is
 // the same at every place has the light of a plane-parallel layer instead (plane_parallel_light.h).
 #pragma once

@@ -28,7 +28,7 @@ constexpr double kRowsInLayer = 40.0, kCellDepth = 0.2, kMostCells = 2.0;
 constexpr double kHiddenBelowHorizon = 0.03;
 constexpr double kReachOfHorizon = 0.8, kMostReach_m = 4e5;
 // Shorter periods count as several.
-constexpr double kLeastPeriod_m = 1000.0;
+constexpr double kLeastPeriod_m = 100.0;
 
 // Deeper beams are stored as 2^-31, and end.
 constexpr float kOpaque = 21.5F;

@@ -24,8 +24,8 @@
 // whose light depends on the medium without forward peak, with less than half of the extinction: it
 // is linear in the root of T. Both follow a beam in the field to the first plane that is 150 m away
 // or more, in steps of 5 m times 1.15^n up to 40 m. TransmittanceAround(), for shafts far from the
-// eye, is linear between the planes behind and ahead of a point instead. Fields with a period below
-// 1 km count as several periods: a round for each of them would be many alike.
+// eye, is linear between the planes behind and ahead of a point instead. Periods below 100 m
+// count as several: a round for each of them would be many alike.
 //
 // The map reaches around the place for 0.8 times the distance at which an eye on the ground can see
 // the field. Beams of points further away, and those that enter the layer steeper than all these,

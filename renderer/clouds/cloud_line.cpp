@@ -11,7 +11,10 @@ void CloudField::Line::FindBlock() {
   const Cell cell = field_->CellIn(at);
   depth_ = nullptr;
   if (!cell.is_inside) {
-    block_until_m_ = at_m_ + field_->SpanAhead(origin_ + at_m_ * direction_, direction_).length_m;
+    const CloudSpan span = field_->SpanAhead(origin_ + at_m_ * direction_, direction_);
+    // A point on the border may be inside by the rounding of SpanAhead().
+    block_until_m_ =
+        at_m_ + (span.majorant_per_m > 0.0 ? field_->behind_border_m() : span.length_m);
     return;
   }
   const Bricks& bricks = *field_->bricks_;

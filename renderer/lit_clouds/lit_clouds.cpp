@@ -112,7 +112,7 @@ Spectrum NightAlong(const CloudsOnRay& clouds, const NightScattered& night, cons
 }
 
 LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
-                     const SolvedAir& air, const DistantLight& light, CloudView view)
+                     const SolvedAir& air, const DistantLight& light, CloudsInPicture view)
     : clouds_(std::move(clouds)),
       past_terrain_(std::move(view.past_terrain)),
       geometry_(geometry),

@@ -147,7 +147,7 @@ struct NightScattered {
                                   const std::function<Spectrum(double)>& left);
 
 /// How a picture sees clouds.
-struct CloudView {
+struct CloudsInPicture {
   CloudLightMethod method = CloudLightMethod::kFast;  // of light along rays
   /// Rays of a picture share the noise of the hybrid method (shared_cloud_light.h), with
   /// LitClouds::kSharedPaths paths each. Nothing: every ray has the paths of the options.
@@ -163,7 +163,7 @@ class LitClouds {
  public:
   /// @param clouds  solved for the light.
   LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeometry& geometry,
-            const SolvedAir& air, const DistantLight& light, CloudView view = {});
+            const SolvedAir& air, const DistantLight& light, CloudsInPicture view = {});
   LitClouds(const LitClouds&) = delete;
   LitClouds& operator=(const LitClouds&) = delete;
 

@@ -193,8 +193,8 @@ void FrameContext::LightClouds() {
     const DistantLight& light = source.light.source;
     source.clouds = std::make_shared<const LitClouds>(
         CloudsIn(light), scene_->geometry(), over_ground_->air, light,
-        CloudView{settings_.cloud_light, PixelRaysOf(camera(), geometry(), settings_),
-                  source.shadows, MirrorBelow(camera().eye(), geometry())});
+        CloudsInPicture{settings_.cloud_light, PixelRaysOf(camera(), geometry(), settings_),
+                        source.shadows, MirrorBelow(camera().eye(), geometry())});
   }
 }
 

@@ -290,7 +290,7 @@ TEST(SunProbes, PointsOfTheAirHaveTheLightOverACrestInFront) {
   const ShadowHeights heights(Ridge(), EasternSun(8.0), kSunRadius);
   const SunProbes probes(terrain, EasternSun(8.0), kSunRadius);
   for (const double away_m : {400.0, 2500.0, 5000.0}) {  // the last one is before the terrain
-    for (const double radii : {-3.0, -0.9, -0.5, 0.0, 0.3, 0.8, 3.0}) {
+    for (const double radii : {-3.0, -0.9, -0.5, 0.1, 0.3, 0.8, 3.0}) {
       const double crest = kElevation - radii * kSunRadius;
       const glm::dvec3 point(-away_m, 300.0, 1000.0 - away_m * std::tan(crest));
       const double light = SunlightOverEdge(radii);
