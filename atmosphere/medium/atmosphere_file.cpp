@@ -342,27 +342,13 @@ class AtmosphereFile {
     return share;
   }
 
-  // Interpolates the logarithm of the coefficient linearly in the logarithm of the wavelength;
-  // beyond the wavelengths the coefficient is extrapolated as lambda^-4.
-  static double MoleculesAt550(const Medium& medium) {
-    const Values& x = medium.wavelengths_nm;
-    const Values& y = medium.rayleigh_scattering_per_m;
-    const auto above = std::upper_bound(x.begin(), x.end(), 550.0);
-    const auto i = static_cast<std::size_t>(above - x.begin());
-    if (above == x.begin()) return y.front() * std::pow(x.front() / 550.0, 4);
-    if (above == x.end()) return y.back() * std::pow(x.back() / 550.0, 4);
-    if (y[i - 1] == 0.0 || y[i] == 0.0) return 0.0;
-    const double share = std::log(550.0 / x[i - 1]) / std::log(x[i] / x[i - 1]);
-    return y[i - 1] * std::pow(y[i] / y[i - 1], share);
-  }
-
   double AerosolAt550(const Medium& medium) const {
     const TomlSection& table = *aerosol_;
     if (const auto depth = table.Number("optical_depth_550")) {
       return *depth / medium.mie_scale_height_m;
     }
     RequireList(medium.rayleigh_scattering_per_m, "rayleigh.scattering_per_m");
-    const double molecules = MoleculesAt550(medium);
+    const double molecules = MoleculesAt550_per_m(medium);
     if (const auto turbidity = table.Number("turbidity")) {
       return (*turbidity - 1.0) * molecules * MoleculeColumn_m(medium) / medium.mie_scale_height_m;
     }

@@ -264,13 +264,15 @@ bool LooksLikeFile(const std::string& text) {
 
 constexpr double kMostAerosol = 1000.0;
 
-std::size_t BandOfGreen(const Medium& medium) {
-  constexpr double kGreen_nm = 550.0;
-  const auto& bands = medium.wavelengths_nm;
-  const auto nearest = std::min_element(bands.begin(), bands.end(), [](double a, double b) {
-    return std::abs(a - kGreen_nm) < std::abs(b - kGreen_nm);
-  });
-  return static_cast<std::size_t>(nearest - bands.begin());
+/// Extinction at an altitude and 550 nm.
+struct AirAt550 {
+  double molecules_per_m, aerosol_per_m;
+};
+
+AirAt550 AirAt(const Medium& medium, double altitude_m) {
+  const double height_m = std::max(altitude_m, 0.0);
+  return {MoleculeDensity(medium, height_m) * MoleculesAt550_per_m(medium),
+          std::exp(-height_m / medium.mie_scale_height_m) * AerosolAt550_per_m(medium)};
 }
 
 }  // namespace
@@ -399,29 +401,41 @@ Medium Changed(Medium medium, const AirChoice& choice) {
   return medium;
 }
 
-double VisibilityOf(const Medium& medium) {
-  const std::size_t band = BandOfGreen(medium);
-  return kOpticalDepthOfVisibility /
-         (medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
+double CoefficientAt550(const std::vector<double>& wavelengths_nm,
+                        const std::vector<double>& coefficients, double exponent) {
+  constexpr double kGreen_nm = 550.0;
+  const std::vector<double>&x = wavelengths_nm, &y = coefficients;
+  const auto above = std::upper_bound(x.begin(), x.end(), kGreen_nm);
+  const auto i = static_cast<std::size_t>(above - x.begin());
+  if (above == x.begin()) return y.front() * std::pow(kGreen_nm / x.front(), exponent);
+  if (above == x.end()) return y.back() * std::pow(kGreen_nm / x.back(), exponent);
+  if (y[i - 1] == 0.0 || y[i] == 0.0) return 0.0;
+  const double share = std::log(kGreen_nm / x[i - 1]) / std::log(x[i] / x[i - 1]);
+  return y[i - 1] * std::pow(y[i] / y[i - 1], share);
 }
+
+double MoleculesAt550_per_m(const Medium& medium) {
+  constexpr double kOfMolecules = -4.0;
+  return CoefficientAt550(medium.wavelengths_nm, medium.rayleigh_scattering_per_m, kOfMolecules);
+}
+
+double AerosolAt550_per_m(const Medium& medium) {
+  constexpr double kOfAerosol = -1.3;  // the default of aerosol.angstrom_exponent
+  return CoefficientAt550(medium.wavelengths_nm, medium.mie_extinction_per_m, kOfAerosol);
+}
+
+double VisibilityOf(const Medium& medium) { return VisibilityAt(medium, 0.0, 0.0); }
 
 double VisibilityAt(const Medium& medium, double altitude_m, double more_per_m) {
-  const std::size_t band = BandOfGreen(medium);
-  const double height_m = std::max(altitude_m, 0.0);
-  const double per_m =
-      MoleculeDensity(medium, height_m) * medium.rayleigh_scattering_per_m[band] +
-      std::exp(-height_m / medium.mie_scale_height_m) * medium.mie_extinction_per_m[band] +
-      more_per_m;
-  return kOpticalDepthOfVisibility / per_m;
+  const AirAt550 air = AirAt(medium, altitude_m);
+  return kOpticalDepthOfVisibility / (air.molecules_per_m + air.aerosol_per_m + more_per_m);
 }
 
-double AerosolForVisibility(const Medium& medium, double visibility_m) {
-  const std::size_t band = BandOfGreen(medium);
-  const double wanted_per_m =
-      kOpticalDepthOfVisibility / visibility_m - medium.rayleigh_scattering_per_m[band];
-  const double has_per_m = medium.mie_extinction_per_m[band];
-  if (!(wanted_per_m > 0.0) || has_per_m == 0.0) return 0.0;
-  return std::min(wanted_per_m / has_per_m, kMostAerosol);
+double AerosolForVisibility(const Medium& medium, double visibility_m, double altitude_m) {
+  const AirAt550 air = AirAt(medium, altitude_m);
+  const double wanted_per_m = kOpticalDepthOfVisibility / visibility_m - air.molecules_per_m;
+  if (!(wanted_per_m > 0.0) || air.aerosol_per_m == 0.0) return 0.0;
+  return std::min(wanted_per_m / air.aerosol_per_m, kMostAerosol);
 }
 
 double OzoneDobson(const Medium& medium) {

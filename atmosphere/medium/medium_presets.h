@@ -44,16 +44,27 @@ struct AirChoice {
 /// Returns the changed medium. Throws InputError that names the value out of range.
 [[nodiscard]] Medium Changed(Medium medium, const AirChoice& choice);
 
-/// Returns Koschmieder's visibility at altitude 0 in the band nearest to 550 nm [m]; infinite in a
-/// vacuum.
+/// Returns a coefficient at 550 nm, linear between the wavelengths in the logarithms of wavelength and
+/// coefficient; 0 if one of its neighbours is 0.
+/// @param coefficients  one per wavelength, not negative.
+/// @param exponent  of the power of the wavelength beyond the wavelengths: -4 for molecules.
+[[nodiscard]] double CoefficientAt550(const std::vector<double>& wavelengths_nm,
+                                      const std::vector<double>& coefficients, double exponent);
+
+/// Returns the extinction coefficients of molecules and aerosol at altitude 0 and 550 nm [1/m].
+[[nodiscard]] double MoleculesAt550_per_m(const Medium& medium);
+[[nodiscard]] double AerosolAt550_per_m(const Medium& medium);
+
+/// Returns Koschmieder's visibility at altitude 0 and 550 nm [m]; infinite in a vacuum.
 [[nodiscard]] double VisibilityOf(const Medium& medium);
 /// Returns Koschmieder's visibility at an altitude [m], from the extinction of molecules and
 /// aerosol there and of other media.
 /// @param more_per_m  extinction of other media [1/m].
 [[nodiscard]] double VisibilityAt(const Medium& medium, double altitude_m, double more_per_m);
-/// Returns AirChoice::aerosol for a visibility [m]: 0 where molecules alone already reduce it
+/// Returns AirChoice::aerosol for a visibility [m] at an altitude: 0 where molecules alone already reduce it
 /// further, 1000 at most.
-[[nodiscard]] double AerosolForVisibility(const Medium& medium, double visibility_m);
+[[nodiscard]] double AerosolForVisibility(const Medium& medium, double visibility_m,
+                                          double altitude_m = 0.0);
 /// Returns the ozone of the column in Dobson units, from the band that absorbs most; 0 without
 /// ozone.
 [[nodiscard]] double OzoneDobson(const Medium& medium);

@@ -10,16 +10,13 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-constexpr double kGasConstant_J_per_kmol_K = 8314.32;  // value of the standard
-constexpr double kMolarMass_kg_per_kmol = 28.9644;
-constexpr double kGas_J_per_kg_K = kGasConstant_J_per_kmol_K / kMolarMass_kg_per_kmol;
-constexpr double kHydrostatic_K_per_m = kStandardGravity_m_per_s2 / kGas_J_per_kg_K;
+constexpr double kHydrostatic_K_per_m = kStandardGravity_m_per_s2 / kGasOfAir_J_per_kg_K;
 constexpr double kHeatRatio = 1.4;
 constexpr double kRadius_m = 6356766.0;
 
 struct Layer {
   double base_m, lapse_K_per_m;
-  double temperature_K = 288.15, pressure_Pa = 101325.0;  // at the base
+  double temperature_K = 288.15, pressure_Pa = kStandardPressure_pa;  // at the base
 };
 
 double TemperatureIn(const Layer& layer, double above_base_m) {
@@ -64,8 +61,9 @@ StandardAir StandardAirAt(double height_m) {
                        [](double height, const Layer& layer) { return height < layer.base_m; });
   const Layer& layer = *(above - 1);
   const double temperature_K = TemperatureIn(layer, geopotential_m - layer.base_m);
-  const double gas = kGas_J_per_kg_K * temperature_K;
-  return {PressureIn(layer, geopotential_m - layer.base_m) / gas, std::sqrt(kHeatRatio * gas)};
+  const double gas = kGasOfAir_J_per_kg_K * temperature_K;
+  const double pressure_Pa = PressureIn(layer, geopotential_m - layer.base_m);
+  return {pressure_Pa / gas, std::sqrt(kHeatRatio * gas), temperature_K, pressure_Pa};
 }
 
 }  // namespace alpenglow::atmosphere

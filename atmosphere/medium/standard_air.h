@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Provides the air for the flight model: the U.S. Standard Atmosphere 1976 (NOAA-S/T 76-1562),
-// layers of constant lapse rate up to 84.852 km of geopotential height:
+// Provides the air for the flight model and for reports of the weather: the U.S. Standard Atmosphere
+// 1976 (NOAA-S/T 76-1562), layers of constant lapse rate up to 84.852 km of geopotential height:
 //
 //   T = T_b + L_b (H - H_b)
 //   p = p_b (T_b / T)^(g0 M / (R* L_b)),   or p_b exp(-g0 M (H - H_b) / (R* T_b)) where L_b is 0
@@ -14,7 +14,12 @@ namespace alpenglow::atmosphere {
 struct StandardAir {
   double density_kg_per_m3;
   double sound_m_per_s;  // speed of sound
+  double temperature_k, pressure_pa;
 };
+
+/// Gas constant of dry air with the values of the standard, 8314.32 / 28.9644.
+inline constexpr double kGasOfAir_J_per_kg_K = 8314.32 / 28.9644;
+inline constexpr double kStandardPressure_pa = 101325.0;  // at the sea
 
 /// Returns the air at a height. The relative error against the published table is below 1e-4 from
 /// 0 to 80 km. Below the sea the lowest layer is continued; above 86 km the density continues to

@@ -24,6 +24,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/units.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -118,7 +119,6 @@ struct HeightUnit {
   std::string note;  // empty: none
 };
 
-constexpr double kInternationalFoot_m = 0.3048;
 constexpr double kUsSurveyFoot_m = 1200.0 / 3937.0;
 constexpr std::pair<std::string_view, double> kHeightUnits[] = {
     {"", 1.0},
@@ -145,10 +145,10 @@ constexpr std::pair<std::string_view, double> kHeightUnits[] = {
     {"kilometer", 1000.0},
     {"kilometres", 1000.0},
     {"kilometers", 1000.0},
-    {"ft", kInternationalFoot_m},
-    {"foot", kInternationalFoot_m},
-    {"feet", kInternationalFoot_m},
-    {"international foot", kInternationalFoot_m},
+    {"ft", kMetresPerFoot},
+    {"foot", kMetresPerFoot},
+    {"feet", kMetresPerFoot},
+    {"international foot", kMetresPerFoot},
     {"us-ft", kUsSurveyFoot_m},
     {"ftus", kUsSurveyFoot_m},
     {"us ft", kUsSurveyFoot_m},
@@ -192,7 +192,7 @@ HeightUnit UnitOf(const std::filesystem::path& file, GDALRasterBand& band,
   const double map_unit_m = crs.IsProjected() != 0 ? crs.GetLinearUnits(&name) : 1.0;
   constexpr double kFeetDiffer_m = 1e-5, kRounding = 1e-9;
   if (std::abs(map_unit_m - 1.0) < kRounding) return {};
-  const bool is_in_feet = std::abs(map_unit_m - kInternationalFoot_m) < kFeetDiffer_m;
+  const bool is_in_feet = std::abs(map_unit_m - kMetresPerFoot) < kFeetDiffer_m;
   return {is_in_feet ? map_unit_m : 1.0,
           fmt::format("heights have no unit, and the map is in {}; they are taken in {} (declare "
                       "the unit of the band otherwise)",
