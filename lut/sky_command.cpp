@@ -16,6 +16,8 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
+#include "lut/cli/metar_air.h"
+#include "lut/cli/metar_option.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
 #include "lut/cli/terminal.h"
@@ -26,7 +28,7 @@ namespace alpenglow::lut {
 namespace {
 
 struct SkyOptions {
-  std::optional<std::string> atmosphere, png, time, zone;
+  std::optional<std::string> atmosphere, metar, png, time, zone;
   std::string out, size = "2048x1024", orientation = "north";
   DisplayOptions display;
   std::optional<double> sun_elevation, latitude, longitude;
@@ -62,7 +64,8 @@ void PlaceAt(const SkyOptions& options, SkyJob& job) {
 
 SkyJob JobFrom(const SkyOptions& options) {
   SkyJob job;
-  if (options.atmosphere) job.air = Atmosphere(MediumFromChoice(*options.atmosphere, kForPictures));
+  job.air = Atmosphere(InTypedAir(
+      MediumFromChoice(options.atmosphere.value_or("earth"), kForPictures), options.metar));
   const ImageSize size = ImageSizeFromText(options.size);
   job.panorama = {.width = size.width,
                   .height = size.height,
@@ -205,6 +208,7 @@ Subcommand AddSkyCommand(CLI::App& app) {
   AddPlace(sky, *options);
   BeginGroup(sky, kAirGroup);
   AddAtmosphereOption(sky, options->atmosphere);
+  AddMetarOption(sky, options->metar, kMetarAirHelp);
   AddPicture(sky, *options);
   AddOutput(sky, *options);
   BeginDiagnostics(sky);

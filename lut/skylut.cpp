@@ -7,6 +7,8 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "lut/cli/command_line.h"
+#include "lut/cli/metar_air.h"
+#include "lut/cli/metar_option.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
 #include "lut/cli/program.h"
@@ -23,7 +25,7 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::optional<std::string> atmosphere, tables, max_error;
+  std::optional<std::string> atmosphere, metar, tables, max_error;
   std::string described;
   std::string cases, results, method;
   std::optional<int> samples;
@@ -60,6 +62,7 @@ void AddEval(CLI::App& app, Options& options) {
   AddAtmosphereOption(eval, options.atmosphere);
   eval.add_option("--lut", options.tables,
                   "Folder of tables. Without --atmosphere, the atmosphere of the tables is used");
+  AddMetarOption(eval, options.metar, kMetarAirHelp)->excludes("--lut");
   BeginGroup(eval, kOutputGroup);
   eval.add_option("--cases", options.cases, "CSV file of the cases")->required();
   eval.add_option("--out", options.results, "CSV file of the results")
@@ -105,6 +108,7 @@ std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
     medium = tables.medium;
   }
   if (!medium) medium = MediumPreset("earth");
+  if (options.metar) medium = InTypedAir(*std::move(medium), options.metar);
   const auto error = RelativeErrorFromText(options.max_error.value_or(""));
   if (options.method == "path-trace")
     return MakePathTraceEvaluator(

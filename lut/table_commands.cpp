@@ -11,6 +11,8 @@
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/medium_presets.h"
+#include "lut/cli/metar_air.h"
+#include "lut/cli/metar_option.h"
 #include "lut/cli/output_file.h"
 #include "lut/evaluate/eval.h"
 #include "lut/report/report.h"
@@ -24,7 +26,7 @@ namespace alpenglow::lut {
 namespace {
 
 struct BuildOptions {
-  std::optional<std::string> atmosphere;
+  std::optional<std::string> atmosphere, metar;
   std::string out;
   bool single_scattering_only = false;
   std::string quality = "standard";
@@ -76,8 +78,8 @@ void RequireAtmosphereElsewhere(const BuildOptions& options, const char* name) {
 
 /// Returns the air of the options, by default a preset.
 Atmosphere AirOf(const BuildOptions& options, const char* preset) {
-  return options.atmosphere ? Atmosphere(MediumFromChoice(*options.atmosphere, kForLight))
-                            : Atmosphere::Preset(preset);
+  return Atmosphere(
+      InTypedAir(MediumFromChoice(options.atmosphere.value_or(preset), kForLight), options.metar));
 }
 
 /// Writes a warning about media whose aerosol has a tabulated phase function. The exported tables
@@ -226,6 +228,7 @@ Subcommand AddBuildCommand(CLI::App& app) {
       "Build the tables of an atmosphere: transmittance, single scattering, multiple scattering.");
   BeginGroup(build, kAirGroup);
   AddAtmosphereOption(build, options->atmosphere);
+  AddMetarOption(build, options->metar, kMetarAirHelp);
   BeginGroup(build, kOutputGroup);
   build.add_option("--out", options->out, "Folder for the tables; it is created if necessary")
       ->check(FaultOfFolderName)

@@ -20,6 +20,7 @@
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
+#include "renderer/scene/scene_weather.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/manifest.h"
 #include "renderer/series/scene_metadata.h"
@@ -53,11 +54,15 @@ SceneOptions AlongPath(SceneOptions scene, const std::string& file,
 }
 
 Scene SceneOf(const SkyseriesOptions& options, const std::optional<Track>& track) {
-  if (!options.scene_file.empty()) return ReadScene(options.scene_file);
-  Scene scene = SceneFromOptions(options.path ? AlongPath(options.scene, *options.path, track)
-                                              : options.scene);
-  if (options.scene.place) scene.zone = PlaceNamed(*options.scene.place).zone;
-  return scene;
+  const SceneWeather& weather = options.weather;
+  if (!options.scene_file.empty()) return ReadScene(options.scene_file, kForPictures, weather);
+  const SceneOptions placed = options.path ? AlongPath(options.scene, *options.path, track)
+                                           : AtStation(options.scene, weather);
+  Scene scene = SceneFromOptions(placed);
+  if (placed.place) scene.zone = PlaceNamed(*placed.place).zone;
+  if (!weather.metar) return scene;
+  scene.time.reset();  // noon by default; the report has its own time
+  return InTypedWeather(std::move(scene), weather);
 }
 
 /// Returns a track as a path; loads the ground unless the track's heights are above the sea.
@@ -108,6 +113,7 @@ SeriesPlan PlanOf(const SkyseriesOptions& options) {
   if (options.path && IsTrack(*options.path)) track = ReadTrack(*options.path);
   SeriesPlan plan;
   plan.scene = SceneOf(options, track);
+  for (const std::string& note : plan.scene.weather.notes) Warn(note);
   if (options.zone) plan.scene.zone = options.zone;
   if (options.clouds) plan.scene.clouds = CloudsFromText(*options.clouds);
   const Scene& scene = plan.scene;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lut/cli/command_line.h"
+#include "lut/cli/metar_option.h"
 #include "lut/cli/output_file.h"
 #include "lut/evaluate/eval.h"
 #include "lut/image/look_options.h"
@@ -22,6 +23,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
+#include "renderer/scene/scene_weather.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/series.h"
 
@@ -53,6 +55,7 @@ struct SkyseriesOptions {
   std::string scene_file;
   SceneOptions scene;
   std::optional<std::string> clouds;  // see CloudsFromText; replace those of the scene
+  SceneWeather weather;               // replaces that of the scene
   std::optional<std::string> path;
   TrackStyle track;
   TimesText times;
@@ -192,11 +195,16 @@ inline void AddAirOptions(CLI::App& app, SkyseriesOptions& options) {
                  "bruneton2017");
   AddWithoutFile(app, "--bortle", options.scene.bortle,
                  "Light pollution of the night sky: class 1 (dark) to 9 (city)");
-  app.add_option("--clouds", options.clouds,
-                 "Clouds, instead of those of the scene: none, fair (cumulus 0.25), broken "
-                 "(stratocumulus 0.75), high (cirrus 0.5), or layers separated by commas, each a "
-                 "genus and its cover, 0 to 1: \"cumulus 0.3, cirrus 0.5\". Genera are cumulus (at "
-                 "most 0.8), stratocumulus, altocumulus and cirrus")
+  AddMetarOption(app, options.weather.metar);
+  app.add_option("--station-height", options.weather.station_height_m, kStationHeightHelp)
+      ->check(InRange(kStationHeights_m.first, kStationHeights_m.second))
+      ->needs("--metar");
+  app.add_option(
+         "--clouds", options.clouds,
+         "Clouds, instead of those of the scene or of --metar: none, fair (cumulus 0.25), broken "
+         "(stratocumulus 0.75), high (cirrus 0.5), or layers separated by commas, each a "
+         "genus and its cover, 0 to 1: \"cumulus 0.3, cirrus 0.5\". Genera are cumulus (at "
+         "most 0.8), stratocumulus, altocumulus and cirrus")
       ->check(ReadableBy([](const std::string& text) { (void)CloudsFromText(text); }));
 }
 

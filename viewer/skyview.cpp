@@ -16,6 +16,7 @@
 #include "renderer/camera/track_names.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
+#include "renderer/scene/scene_weather.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/video.h"
 #include "viewer/flight/flight_recorder.h"
@@ -47,7 +48,8 @@ void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
 /// @param track  the track of --path, if it is one: without another place, the scene is that of its
 ///     middle, as in skyseries.
 Scene SceneOf(const SkyviewOptions& options, const std::optional<Track>& track) {
-  if (!options.scene_file.empty()) return ReadScene(options.scene_file, kForViewer);
+  if (!options.scene_file.empty())
+    return ReadScene(options.scene_file, kForViewer, options.weather);
   SceneOptions typed;
   typed.place = options.place;
   typed.latitude = options.latitude;
@@ -62,9 +64,9 @@ Scene SceneOf(const SkyviewOptions& options, const std::optional<Track>& track) 
     typed.longitude = middle.longitude_deg;
   }
   StandOverTheLand(options, typed);
-  Scene scene = SceneFromOptions(typed);
+  Scene scene = SceneFromOptions(AtStation(typed, options.weather));
   scene.time.reset();  // StartOf uses noon at the place instead of noon in Greenwich
-  return scene;
+  return options.weather.metar ? InTypedWeather(std::move(scene), options.weather) : scene;
 }
 
 // A position and directions on the command line override the camera of a scene file.
@@ -79,8 +81,9 @@ EyePlacement PlacementOf(const SkyviewOptions& options) {
   return placement;
 }
 
-/// Returns the scene without what is not drawn in flight, and writes a message about it.
+/// Returns the scene without what is not drawn in flight, and writes messages about it.
 Scene Drawable(Scene scene) {
+  for (const std::string& note : scene.weather.notes) Warn(note);
   if (scene.clouds.empty()) return scene;
   Log(fmt::format("skyview: the clouds of {} are not drawn; skyseries draws them\n",
                   scene.clouds.front().name.substr(0, scene.clouds.front().name.rfind(": "))));

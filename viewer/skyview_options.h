@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "lut/cli/command_line.h"
+#include "lut/cli/metar_option.h"
 #include "lut/image/look_options.h"
 #include "lut/image/picture_format.h"
 #include "renderer/scene/scene_options.h"
+#include "renderer/scene/scene_weather.h"
 #include "viewer/input/action.h"
 #include "viewer/layer.h"
 
@@ -35,6 +37,7 @@ inline constexpr char kSkyviewExamples[] =
 struct SkyviewOptions {
   CommonOptions common;
   std::string scene_file, size = "1280x720";
+  SceneWeather weather;  // replaces that of the scene
   std::optional<double> latitude, longitude, altitude, heading, pitch;
   std::optional<std::string> time, screenshot, record, replay, video, place, track;
   std::vector<std::string> dem;
@@ -99,6 +102,14 @@ inline void AddPlaceOptions(CLI::App& app, SkyviewOptions& options) {
                  "Time at the start: 2026-06-21T04:00:00Z, or an event of the day of the scene: "
                  "sunrise-10m, noon, civil-dusk (default: the time of the scene, or noon on "
                  "2026-06-21 at the place of the camera)");
+}
+
+inline void AddAirOptions(CLI::App& app, SkyviewOptions& options) {
+  BeginGroup(app, kAirGroup);
+  AddMetarOption(app, options.weather.metar);
+  app.add_option("--station-height", options.weather.station_height_m, kStationHeightHelp)
+      ->check(InRange(kStationHeights_m.first, kStationHeights_m.second))
+      ->needs("--metar");
 }
 
 inline void AddPictureOptions(CLI::App& app, SkyviewOptions& options) {
@@ -181,6 +192,7 @@ inline void AddDiagnostics(CLI::App& app, SkyviewOptions& options) {
 
 inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
   AddPlaceOptions(app, options);
+  AddAirOptions(app, options);
   AddPictureOptions(app, options);
   AddOutputOptions(app, options);
   AddDiagnostics(app, options);

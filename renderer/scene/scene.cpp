@@ -18,6 +18,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_fields.h"
+#include "renderer/scene/scene_weather.h"
 #include "renderer/scene/volume_file.h"
 
 namespace alpenglow::renderer {
@@ -186,6 +187,27 @@ std::optional<fs::path> FileNamedBy(const TomlSection& table, const std::string&
   if (name->empty())
     table.Fail(key, table.FullName(key) + " is empty; it must be the name of a file");
   return folder / *name;
+}
+
+/// Refuses tables of the file that give what its report gives.
+void RequireNoSecondWeather(const TomlTable& document, const MetarReport& report) {
+  if (report.states_clouds && document.Has("cloud"))
+    throw InputError("the report and [[cloud]] both give clouds; give one");
+  if (IsInFog(report) && document.Has("fog"))
+    throw InputError("the report and [fog] both give fog; give one");
+}
+
+/// Returns the scene in the weather of its file, if it gives one.
+Scene InWeatherOfFile(Scene scene, const TomlTable& document) {
+  const std::optional<TomlSection> table = SectionOf(document, WeatherFields());
+  if (!table) return scene;
+  WeatherFields().Read(*table, scene.weather);
+  Require(*table, "metar");
+  scene.weather.metar = table->Text("metar");
+  return At(*table, "metar", [&] {
+    RequireNoSecondWeather(document, ReadMetar(*scene.weather.metar));
+    return InWeather(scene, "weather.metar");
+  });
 }
 
 TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
@@ -700,7 +722,7 @@ Camera CameraFromDegrees(const Height& height, double heading, double pitch, dou
 }
 
 Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::path& folder,
-                    const MediumUse& use) {
+                    const MediumUse& use, const SceneWeather& weather) {
   const TomlTable document(text, origin);
   std::vector<std::string> sections;
   ForEachTable([&](const auto& fields, const auto&) { sections.push_back(fields.name); });
@@ -729,12 +751,14 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
         object, fmt::format("{}: object[{}]", origin, scene.objects.size()), scene.objects));
   }
   scene.clouds = CloudsOf(document, folder, origin);
-  return scene;
+  if (!weather.metar) return InWeatherOfFile(std::move(scene), document);
+  static_cast<void>(SectionOf(document, WeatherFields()));  // refuses its keys
+  return InTypedWeather(std::move(scene), weather);
 }
 
-Scene ReadScene(const fs::path& file, const MediumUse& use) {
+Scene ReadScene(const fs::path& file, const MediumUse& use, const SceneWeather& weather) {
   const fs::path folder = FolderOf(file);  // before a pipe ends
-  return SceneFromToml(ReadTextFile(file), file.string(), folder, use);
+  return SceneFromToml(ReadTextFile(file), file.string(), folder, use, weather);
 }
 
 }  // namespace alpenglow::renderer

@@ -210,12 +210,20 @@ struct SceneCloud {
   std::optional<Place> middle;  // of a grid; empty: the place of the scene
 };
 
+/// The weather by which clouds, fog and air of a scene were made, see InWeather.
+struct SceneWeather {
+  std::optional<std::string> metar;        // a report, see ReadMetar
+  std::optional<double> station_height_m;  // of its station, above the ellipsoid
+  std::vector<std::string> notes;  // what of the report has no effect, and what contradicts itself
+};
+
 struct Scene {
   Place place;                      // with height 0
   std::optional<std::string> zone;  // IANA name
   std::optional<UtcTime> time;
   Camera camera;
   Medium medium;  // default: preset "earth"
+  SceneWeather weather;
   TerrainSource terrain;
   GroundCover ground;
   std::vector<Light> lights;
@@ -235,14 +243,17 @@ struct Scene {
 /// for unknown keys (with the nearest known one), wrong types, values out of range, a missing
 /// place, malformed text, and errors of ReadMedium. Files of the terrain are not opened here.
 /// @param use  of the medium.
+/// @param weather  that of the command line, which replaces weather, clouds and fog of the file.
 [[nodiscard]] Scene ReadScene(const std::filesystem::path& file,
-                              const MediumUse& use = kForPictures);
+                              const MediumUse& use = kForPictures,
+                              const SceneWeather& weather = {});
 
 /// Reads a scene from text, like ReadScene. `origin` replaces the file's name in messages, and file
 /// names are relative to `folder`.
 [[nodiscard]] Scene SceneFromToml(std::string_view text, const std::string& origin,
                                   const std::filesystem::path& folder,
-                                  const MediumUse& use = kForPictures);
+                                  const MediumUse& use = kForPictures,
+                                  const SceneWeather& weather = {});
 
 /// Returns a camera from checked values: heading [-360, 360], pitch [-90, 90], roll [-180, 180],
 /// fov [0.1, 179] or 360, all in degrees. Throws InputError that names the value with `prefix` in

@@ -8,6 +8,7 @@
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/names.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/scene/scene_weather.h"
 #include "renderer/scene/volume_file.h"
 
 namespace alpenglow::renderer {
@@ -233,6 +234,17 @@ const TomlFields<Scene>& AtmosphereFields() {
         "# \"atmosphere.toml\""},
        {"preset", Text<Scene>(), "", "", "the presets of atmosphere/ATMOSPHERE_FILE.md",
         "\"earth\""}}};
+  return fields;
+}
+
+const TomlFields<SceneWeather>& WeatherFields() {
+  static const TomlFields<SceneWeather> fields{
+      "weather",
+      {{"metar", ReadApart(Text(&SceneWeather::metar)), "", "",
+        "METAR or SPECI (Weather by report)", "# \"LSZH 211350Z 24008KT 9999 FEW040 22/12 Q1018\"",
+        true},
+       {"station_height_m", Number(&SceneWeather::station_height_m, kStationHeights_m), "m", "",
+        "above the ellipsoid; the default is that of a named airport, or 0", "# 423.0", true}}};
   return fields;
 }
 

@@ -16,6 +16,7 @@ namespace alpenglow::renderer {
 [[nodiscard]] const TomlFields<Scene>& TimeFields();
 [[nodiscard]] const TomlFields<Camera>& CameraFields();
 [[nodiscard]] const TomlFields<Scene>& AtmosphereFields();
+[[nodiscard]] const TomlFields<SceneWeather>& WeatherFields();
 [[nodiscard]] const TomlFields<TerrainSource>& TerrainFields();
 [[nodiscard]] const TomlFields<GroundCover>& GroundFields();
 [[nodiscard]] const TomlFields<Light>& LightFields();
@@ -38,6 +39,7 @@ void ForEachTable(const Use& use) {
   use(TimeFields(), whole);
   use(CameraFields(), [](auto& scene) { return std::span(&scene.camera, 1); });
   use(AtmosphereFields(), whole);
+  use(WeatherFields(), [](auto& scene) { return std::span(&scene.weather, 1); });
   use(TerrainFields(), [](auto& scene) { return std::span(&scene.terrain, 1); });
   use(GroundFields(), [](auto& scene) { return std::span(&scene.ground, 1); });
   use(LightFields(), [](auto& scene) { return std::span(scene.lights); });

@@ -12,6 +12,7 @@
 #include "renderer/procedural_mountains/lattice_noise.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
+#include "renderer/scene/scene_weather.h"
 #include "renderer/scene/volume_file.h"
 #include "renderer/terrain/land_source.h"
 
@@ -157,6 +158,12 @@ TerrainSource RangeSeenFrom(const Place& place) {
   range.centre = CentreOfRangeSeenFrom(place);
   range.range_seed = IsOnRangeAtHome(place) ? 0 : SeedAt(place);
   return range;
+}
+
+SceneOptions AtStation(SceneOptions options, const SceneWeather& weather) {
+  const bool has_place = options.place || options.latitude || options.longitude;
+  if (!has_place && options.dem.empty()) options.place = AirportOf(weather);
+  return options;
 }
 
 Scene SceneFromOptions(const SceneOptions& options) {

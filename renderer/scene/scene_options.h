@@ -52,6 +52,10 @@ struct SceneOptions {
 /// Returns whether a place lies on the built-in range around kHomeLatitude and kHomeLongitude.
 [[nodiscard]] bool IsOnRangeAtHome(const Place& place);
 
+/// Returns the options with the place of a report, if its station is a named airport and the options
+/// have neither a place nor an elevation model.
+[[nodiscard]] SceneOptions AtStation(SceneOptions options, const SceneWeather& weather);
+
 /// Returns the scene with the eye at latitude and longitude or the named place, on any ground. With
 /// `dem` the default is 2 m above the ground, looking north, horizontally, 60 degrees wide. Without
 /// it the range is RangeSeenFrom the place, and height and directions default to

@@ -204,6 +204,11 @@ Metadata RecordOf(const TomlFields<Camera>& fields, const Camera& camera, std::s
   return records;
 }
 
+Metadata RecordOf(const TomlFields<SceneWeather>& fields, const SceneWeather& weather,
+                  std::size_t /*number*/, const FileHashes& /*hashes*/) {
+  return NamedRecordsOf(fields, weather);
+}
+
 Metadata RecordOf(const TomlFields<TerrainSource>& fields, const TerrainSource& terrain,
                   std::size_t /*number*/, const FileHashes& hashes) {
   Metadata records{

@@ -81,6 +81,23 @@ TEST_F(Skylut, APresetMayReplaceAnAtmosphereFile) {
   EXPECT_THAT(Run(eval + "vacuum-of-space --out r.csv").error, HasSubstr("presets are earth, "));
 }
 
+// A vertical path through the molecules of a cold high is denser than one of the standard atmosphere.
+TEST_F(Skylut, AReportScalesHazeAndDensityOfTheAir) {
+  WriteCases();
+  const std::string eval = "eval --cases cases.csv --method integral --quiet ";
+  ASSERT_EQ(Run(eval + "--out standard.csv").status, 0);
+  const Outcome hazy = Run(eval + "--metar 'LSZH 211350Z 24008KT 3000 HZ FEW040' --out hazy.csv");
+  ASSERT_EQ(hazy.status, 0) << hazy.error;
+  EXPECT_THAT(hazy.error,
+              HasSubstr("skylut: warning: --metar: not modelled: wind, FEW040 (clouds)"));
+  ASSERT_EQ(Run(eval + "--metar 'LSZH 211350Z M30/M33 Q1045' --out cold.csv").status, 0);
+  const double standard = ValuesOf(folder_ / "standard.csv").front();
+  EXPECT_LT(ValuesOf(folder_ / "hazy.csv").front(), 0.8 * standard);
+  EXPECT_LT(ValuesOf(folder_ / "cold.csv").front(), standard);
+  EXPECT_THAT(Run(eval + "--metar 'LSZH 211350Z 24O08KT 9999' --out r.csv").error,
+              HasSubstr("--metar: group \"24O08KT\": a wind is"));
+}
+
 TEST_F(Skylut, UnknownWordsNameTheNearestKnown) {
   EXPECT_THAT(Run("help").error, HasSubstr("unknown command help; did you mean --help?"));
   EXPECT_THAT(Run("bild --out t").error, HasSubstr("unknown command bild; did you mean build?"));

@@ -111,7 +111,7 @@ TEST_F(Skyseries, HelpAndVersionArePrinted) {
         "--shutter",    "--fps",           "--exposure", "--tone-map", "--look",
         "--resume",     "--contact-sheet", "--latitude", "--dem",      "--white-balance",
         "--atmosphere", "--threads",       "--quiet",    "--progress", "--version",
-        "--clouds",     "--cloud-light",   "Example"})
+        "--clouds",     "--cloud-light",   "--metar",    "Example"})
     EXPECT_THAT(outcome.out, HasSubstr(option));
   const Outcome version = Run("--version");
   EXPECT_EQ(version.status, 0);
@@ -287,7 +287,8 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
       "--max-error 101%;--from sunrise;--progress loud;--at noon --from sunrise --to sunset;"
       "--from sunrise --to sunset --every 1h --count 3;--keogram k.jpg;--plot p.png;"
       "--contact-sheet sheet.jpg;--fps 5;--track-speed 5;--latitude 3;--clouds fog;"
-      "--clouds 'cumulus 0.9';--clouds 'none, fair'");
+      "--clouds 'cumulus 0.9';--clouds 'none, fair';--metar LSZH;--metar 'LSZH 211350Z 22/12 9999';"
+      "--station-height 400;--metar 'LSZH 211350Z CAVOK' --station-height 9000");
   int number = 0;  // Each command line starts a program. The sanitizers run every fourth.
   for (std::string options; std::getline(wrong, options, ';'); ++number) {
     if (number % tests::ScaledDown(1, 4) != 0) continue;
@@ -324,6 +325,31 @@ TEST_F(Skyseries, CloudsOfTheOptionReplaceThoseOfTheScene) {
       << "without clouds it is the same picture";
   ExpectFault(SmallStill() + " --clouds 'cumulos 0.3'", 2, "did you mean cumulus?");
   EXPECT_EQ(Run("--list --at noon --clouds 'cumulus 0.3, cirrus 0.5'").status, 0);
+}
+
+TEST_F(Skyseries, AReportMakesTheWeatherOfTheScene) {
+  WriteText(folder_ / "cloudy.toml",
+            std::string(kBareSceneText) + "[[cloud]]\ngenus = \"cirrus\"\nperiod_m = 2560\n");
+  const std::string still = " --size 16x9 --samples 1 --out " + InFolder("still.exr");
+  const std::string clear = " --metar 'LSZH 211350Z 24008G20KT 8000 -RA NSC 22/12 Q1018 NOSIG'";
+  const Outcome outcome = Run(InFolder("cloudy.toml") + still + clear);
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("skyseries: warning: --metar: not modelled: G20KT (gusts), "
+                                       "-RA (light: rain), NOSIG (trend)\n"));
+  EXPECT_EQ(Header().count("alpenglow.cloud_0"), 0U) << "NSC replaces the clouds of the scene";
+  EXPECT_EQ(Header().at("alpenglow.metar"),
+            "LSZH 211350Z 24008G20KT 8000 -RA NSC 22/12 Q1018 NOSIG");
+  EXPECT_EQ(Header().at("alpenglow.atmosphere"), "custom (from bruneton2017)");
+  ExpectFault(SmallStill() + " --metar 'LSZH 211350Z 24O08KT'", 2,
+              "--metar: group \"24O08KT\": a wind is");
+}
+
+TEST_F(Skyseries, TheTimeOfAReportIsThatOfThePictureUnlessOneIsGiven) {
+  const std::string list = "--list --metar 'LSZH 191350Z CAVOK'";
+  EXPECT_THAT(Run(list).out, HasSubstr("\n0,2026-06-19T13:50:00Z,2026-06-19T15:50:00+02:00,"))
+      << "in the zone of the station";
+  EXPECT_THAT(Run(list + " --at 2026-01-05T10:00Z").out, HasSubstr("\n0,2026-01-05T10:00:00Z,"));
+  EXPECT_THAT(Run(list + " --at 09:00Z").out, HasSubstr("\n0,2026-06-19T09:00:00Z,"));
 }
 
 TEST_F(Skyseries, TracedPicturesAreKeptApartFromOthers) {

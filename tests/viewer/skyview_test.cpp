@@ -284,6 +284,19 @@ TEST_F(Skyview, CloudsOfASceneGiveAMessage) {
                                        " are not drawn; skyseries draws them\n"));
 }
 
+TEST_F(Skyview, AReportMakesTheAirAndItsCloudsGiveAMessage) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  WriteText(folder_ / "s.toml", kBareSceneText);
+  const Outcome outcome = Run(InFolder("s.toml") + " --headless --size 16x9 --screenshot " +
+                              InFolder("v.exr") + " --metar 'LSZH 211350Z 8000 -RA FEW040 22/12'");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.error,
+              HasSubstr("skyview: warning: --metar: not modelled: -RA (light: rain)"));
+  EXPECT_THAT(outcome.error, HasSubstr("skyview: the clouds of --metar are not drawn"));
+  EXPECT_EQ(ReadExr(folder_ / "v.exr").metadata.at("alpenglow.metar"),
+            "LSZH 211350Z 8000 -RA FEW040 22/12");
+}
+
 TEST_F(Skyview, ExplainReportsAPictureOfEdgesOnly) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "s.toml",
@@ -342,10 +355,10 @@ TEST_F(Skyview, AWrongCommandLineExitsWith2) {
   EXPECT_EQ(Run("--headless --explain --record f.csv").status, 2) << "nothing is flown";
   EXPECT_EQ(Run("--headless --replay p.csv --video a.mp4 --record f.csv").status, 2);
   EXPECT_EQ(Run(InFolder("s.toml") + " --dem x.hgt").status, 2);
-  for (const char* wrong :
-       {"--size 0x10", "--size 40000x10", "--latitude 91", "--pitch -100", "--altitude 1e10",
-        "--vsync maybe", "--hud-scale 9", "--frame-rate 0", "--exposure incident",
-        "--exposure bright", "--look golden", "--tone-map local", "--white-balance 900"}) {
+  for (const char* wrong : {"--size 0x10", "--size 40000x10", "--latitude 91", "--pitch -100",
+                            "--altitude 1e10", "--vsync maybe", "--hud-scale 9", "--frame-rate 0",
+                            "--exposure incident", "--exposure bright", "--metar LSZH",
+                            "--look golden", "--tone-map local", "--white-balance 900"}) {
     const Outcome outcome = Run(std::string("--headless --screenshot a.png ") + wrong);
     EXPECT_EQ(outcome.status, 2) << wrong;
     EXPECT_THAT(outcome.error, HasSubstr(std::string(wrong).substr(0, 6)));

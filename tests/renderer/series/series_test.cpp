@@ -641,6 +641,8 @@ const std::vector<ChangedKey>& ChangedAir() {
   static const std::vector<ChangedKey> kKeys{
       {"[atmosphere]\n", "preset = 'earth'", "preset = 'hazy'"},
       {"[atmosphere]\n", "preset = 'earth'", "file = 'mars.toml'"},
+      {"[weather]\n", "metar = 'XAAA 210000Z CAVOK'", "metar = 'XAAA 210000Z NSC'"},
+      {"[weather]\nmetar = 'XAAA 210000Z FEW040'\n", "", "station_height_m = 300"},
       {"", "", "[night]\nbortle = 4"},
       {"[night]\n", "bortle = 4", "bortle = 5"},
       {"[night]\n", "zenith_mag_per_arcsec2 = 20", "zenith_mag_per_arcsec2 = 21"},
