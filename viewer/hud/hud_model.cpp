@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/units.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
@@ -17,7 +18,7 @@ const HudColours& ColoursOf(HudTheme theme) {
       .accent = {0.45F, 1.0F, 0.55F, 1.0F},
       .warning = {1.0F, 0.88F, 0.40F, 1.0F},
       .shadow = {0.0F, 0.0F, 0.0F, 0.55F},
-      .plate = {0.03F, 0.05F, 0.07F, 0.64F},
+      .outline = {0.0F, 0.0F, 0.0F, 0.70F},
       .panel = {0.07F, 0.09F, 0.12F, 0.93F},
       .control = {0.22F, 0.30F, 0.38F, 0.90F},
       .active = {0.24F, 0.46F, 0.60F, 1.0F},
@@ -28,7 +29,7 @@ const HudColours& ColoursOf(HudTheme theme) {
       .accent = {0.95F, 0.48F, 0.06F, 1.0F},
       .warning = {1.0F, 0.34F, 0.08F, 1.0F},
       .shadow = {0.0F, 0.0F, 0.0F, 0.75F},
-      .plate = {0.02F, 0.0F, 0.0F, 0.86F},
+      .outline = {0.0F, 0.0F, 0.0F, 1.0F},
       .panel = {0.04F, 0.01F, 0.005F, 0.92F},
       .control = {0.20F, 0.05F, 0.02F, 0.95F},
       .active = {0.33F, 0.09F, 0.03F, 1.0F},
@@ -46,8 +47,6 @@ HudTheme ThemeFor(HudThemeChoice choice, double ev100, HudTheme before) {
 
 namespace {
 
-constexpr double kMetresPerFoot = 0.3048;          // exact (international yard and pound, 1959)
-constexpr double kMetresPerNauticalMile = 1852.0;  // exact (Monaco, 1929)
 constexpr double kLargeNumber = 1e5;
 constexpr double kFastNumber = 1e4;
 

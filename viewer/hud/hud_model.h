@@ -5,8 +5,8 @@
 // headings clockwise from north, heights and speeds in SI.
 //
 // The day theme has bright colours; the night theme is red and amber, which keeps the eye
-// dark-adapted. Text has a plate or a panel behind it, with a contrast of at least 4.5 (Web Content
-// Accessibility Guidelines 2.1, 1.4.3) over any picture, up to white.
+// dark-adapted. Text has a dark outline or a panel behind it, with a contrast of at least 4.5 (Web
+// Content Accessibility Guidelines 2.1, 1.4.3) over any picture, up to white.
 //
 // Number texts are short, of even width, and have units.
 #pragma once
@@ -28,8 +28,8 @@ using HudColour = std::array<float, 4>;
 
 struct HudColours {
   HudColour text, quiet, accent, warning;  // of text and lines
-  HudColour shadow;                        // around text and lines
-  HudColour plate;                         // behind text and lines
+  HudColour shadow;                        // around lines
+  HudColour outline;                       // around text
   HudColour panel, control, active;        // of panels
 };
 [[nodiscard]] const HudColours& ColoursOf(HudTheme theme);

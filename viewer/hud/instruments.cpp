@@ -13,9 +13,9 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kLineWidth = 2.0;    // units
-constexpr double kShadowWidth = 1.0;  // units, on each side
-constexpr double kRounding = 3.0;     // units
+constexpr double kLineWidth = 2.0;     // units
+constexpr double kShadowWidth = 1.0;   // units, on each side
+constexpr double kOutlineWidth = 1.2;  // units, of text
 
 ImVec2 At(const glm::dvec2& point) {
   return {static_cast<float>(point.x), static_cast<float>(point.y)};
@@ -119,14 +119,14 @@ double WidestOf(const Canvas& canvas, const Lines& lines) {
   return widest;
 }
 
-/// A corner of the picture: the position of the plate's corner, and its side.
+/// A corner of the picture: the position of the block's corner, and its side.
 struct Corner {
   glm::dvec2 at;
   bool right, lower;
 };
 
-constexpr double kEdge = 3.0;    // from the edges of the picture to plates [units]
-constexpr double kMargin = 4.0;  // from the edges of plates to texts [units]
+constexpr double kEdge = 3.0;    // from the edges of the picture to blocks of text [units]
+constexpr double kMargin = 4.0;  // from the edges of blocks to texts [units]
 
 double HeightOf(const Canvas& canvas, const Lines& lines) {
   return static_cast<double>(lines.size()) * canvas.LineHeight() + 2.0 * canvas.Pixels(kMargin);
@@ -138,22 +138,17 @@ void DrawBlock(const Canvas& canvas, const Corner& corner, const Lines& lines) {
   const glm::dvec2 size{WidestOf(canvas, lines) + 2.0 * margin, HeightOf(canvas, lines)};
   const glm::dvec2 from{corner.at.x - (corner.right ? size.x : 0.0),
                         corner.at.y - (corner.lower ? size.y : 0.0)};
-  canvas.Plate(from, from + size);
   const double x = corner.right ? from.x + size.x - margin : from.x + margin;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    canvas.TextOnPlate({x, from.y + margin + static_cast<double>(i) * canvas.LineHeight()},
-                       corner.right ? HudAlign::kRight : HudAlign::kLeft, lines[i],
-                       canvas.colours().text);
+    canvas.Text({x, from.y + margin + static_cast<double>(i) * canvas.LineHeight()},
+                corner.right ? HudAlign::kRight : HudAlign::kLeft, lines[i], canvas.colours().text);
   }
 }
 
 void DrawLineOfMessage(const Canvas& canvas, const HudFrame& frame, double y,
                        const HudMessage& message) {
   const HudColour& colour = message.is_warning ? canvas.colours().warning : canvas.colours().text;
-  const double half = 0.5 * canvas.WidthOf(message.text) + canvas.Pixels(6.0);
-  const double middle = frame.middle().x;
-  canvas.Plate({middle - half, y}, {middle + half, y + canvas.LineHeight()});
-  canvas.TextOnPlate({middle, y}, HudAlign::kMiddle, message.text, colour);
+  canvas.Text({frame.middle().x, y}, HudAlign::kMiddle, message.text, colour);
 }
 
 // Returns the messages in wrapped lines, the lowest line first.
@@ -197,7 +192,7 @@ CornerTexts ShortCornerTextsOf(const HudModel& model) {
           {ExposureText(model.exposure), FrameText(model.speed)}};
 }
 
-// Returns the lower end of the upper right plate, which shows the clock [pixels from the upper
+// Returns the lower end of the upper right block, which shows the clock [pixels from the upper
 // edge].
 double BottomOfClock(const Canvas& canvas, const HudFrame& frame, const CornerTexts& texts) {
   return frame.top + canvas.Pixels(kEdge) + HeightOf(canvas, texts.upper_right);
@@ -302,26 +297,18 @@ double Canvas::LeftOf(double x, HudAlign align, const std::string& text) const {
 
 void Canvas::Text(const glm::dvec2& at, HudAlign align, const std::string& text,
                   const HudColour& colour) const {
-  const double margin = Pixels(3.0), left = LeftOf(at.x, align, text);
-  // The plate has the height of a line, so that plates of adjacent lines meet; the shadow needs
-  // space below.
-  const double top = at.y - 0.25 * (LineHeight() - static_cast<double>(ImGui::GetFontSize()));
-  Plate({left - margin, std::round(top)},
-        {left + WidthOf(text) + margin, std::round(top + LineHeight())});
-  TextOnPlate(at, align, text, colour);
-}
-
-void Canvas::TextOnPlate(const glm::dvec2& at, HudAlign align, const std::string& text,
-                         const HudColour& colour) const {
   const glm::dvec2 corner{LeftOf(at.x, align, text), at.y};
-  const double step = std::max(1.0, Pixels(0.9));
-  list_.AddText(OnPixel(corner + step), Packed(colours_.shadow), text.c_str());
+  const double outline = std::max(1.0, std::round(Pixels(kOutlineWidth)));
+  // Copies half an outline apart leave no gap: dots of letters are as wide as that.
+  const double step = std::max(1.0, std::floor(0.5 * outline));
+  for (double x = -outline; x <= outline; x += step) {
+    for (double y = -outline; y <= outline; y += step) {
+      // Dots and thin strokes cover their pixels in part only: one copy would be too faint there.
+      for (int copy = 0; copy < 2; ++copy)
+        list_.AddText(OnPixel(corner + glm::dvec2(x, y)), Packed(colours_.outline), text.c_str());
+    }
+  }
   list_.AddText(OnPixel(corner), Packed(colour), text.c_str());
-}
-
-void Canvas::Plate(const glm::dvec2& from, const glm::dvec2& to) const {
-  list_.AddRectFilled(At(from), At(to), Packed(colours_.plate),
-                      static_cast<float>(Pixels(kRounding)));
 }
 
 void Canvas::Fill(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Instruments of a flight over a picture: their layout, and a canvas that draws lines, text and
-// plates legibly at any picture brightness.
+// Instruments of a flight over a picture: their layout, and a canvas that draws lines and text
+// legibly at any picture brightness, with dark outlines instead of plates, which would cover the picture.
 #pragma once
 
 #include <imgui.h>
@@ -36,14 +36,11 @@ class Canvas {
   void Disk(const glm::dvec2& centre, double radius_px, const HudColour& colour) const;
   void Triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c,
                 const HudColour& colour) const;
-  /// Draws text on its own plate: it is legible over any picture.
+  /// Draws text in a dark outline, which has a contrast of at least 4.5 to the letters over any
+  /// picture.
   /// @param at  upper left, upper middle, or upper right corner of the text.
   void Text(const glm::dvec2& at, HudAlign align, const std::string& text,
             const HudColour& colour) const;
-  /// Draws text over an existing plate.
-  void TextOnPlate(const glm::dvec2& at, HudAlign align, const std::string& text,
-                   const HudColour& colour) const;
-  void Plate(const glm::dvec2& from, const glm::dvec2& to) const;
   void Fill(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const;
 
   /// Clips drawing to a rectangle during its lifetime.

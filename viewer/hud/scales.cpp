@@ -46,8 +46,8 @@ void DrawBoxed(const Canvas& canvas, const glm::dvec2& top, const std::string& t
   const double left = top.x - share * width;
   canvas.Fill({left, top.y}, {left + width, top.y + canvas.LineHeight() + canvas.Pixels(3.0)},
               canvas.colours().panel);
-  canvas.TextOnPlate({left + margin, top.y + canvas.Pixels(2.5)}, HudAlign::kLeft, text,
-                     canvas.colours().text);
+  canvas.Text({left + margin, top.y + canvas.Pixels(2.5)}, HudAlign::kLeft, text,
+              canvas.colours().text);
 }
 
 /// A scale on the left (-1) or right (1) side of the picture.
@@ -75,10 +75,9 @@ void DrawMark(const Canvas& canvas, const HudFrame& frame, const Scale& scale, l
   canvas.Line({scale.inner_x, y}, {scale.inner_x + scale.side * length, y}, canvas.colours().quiet);
   const bool is_hidden = std::abs(y - frame.middle().y) < 1.1 * canvas.LineHeight();
   if (!labelled || is_hidden) return;
-  canvas.TextOnPlate(
-      {scale.inner_x + scale.side * canvas.Pixels(13.0), y - 0.42 * canvas.LineHeight()},
-      scale.side < 0.0 ? HudAlign::kRight : HudAlign::kLeft, fmt::format("{:g}", value),
-      canvas.colours().quiet);
+  canvas.Text({scale.inner_x + scale.side * canvas.Pixels(13.0), y - 0.42 * canvas.LineHeight()},
+              scale.side < 0.0 ? HudAlign::kRight : HudAlign::kLeft, fmt::format("{:g}", value),
+              canvas.colours().quiet);
 }
 
 void DrawHeld(const Canvas& canvas, const HudFrame& frame, const Scale& scale, double half) {
@@ -95,7 +94,6 @@ void DrawScale(const Canvas& canvas, const HudFrame& frame, const Scale& scale,
   const double outer = scale.inner_x + scale.side * canvas.Pixels(kTapeWidth);
   const glm::dvec2 from{std::min(scale.inner_x, outer), middle - half};
   const glm::dvec2 to{std::max(scale.inner_x, outer), middle + half};
-  canvas.Plate(from, to);
   {
     const Canvas::Clip inside(canvas, from, to);
     const auto each_way = static_cast<long>(half / canvas.Pixels(kMarkDistance)) + 1;
@@ -143,9 +141,8 @@ void DrawHeadingMarks(const Canvas& canvas, const HeadingTape& tape) {
     const double mark = canvas.Pixels(degrees % 10 == 0 ? 8.0 : 5.0);
     canvas.Line({x, tape.bottom() - mark}, {x, tape.bottom()}, canvas.colours().quiet);
     if (degrees % 10 != 0) continue;
-    canvas.TextOnPlate({x, tape.top() + canvas.Pixels(2.0)}, HudAlign::kMiddle,
-                       HeadingLabel(degrees),
-                       degrees % 90 == 0 ? canvas.colours().text : canvas.colours().quiet);
+    canvas.Text({x, tape.top() + canvas.Pixels(2.0)}, HudAlign::kMiddle, HeadingLabel(degrees),
+                degrees % 90 == 0 ? canvas.colours().text : canvas.colours().quiet);
   }
 }
 
@@ -306,7 +303,6 @@ double MarkStep(double value, double least) {
 
 void DrawHeadingTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
   const HeadingTape tape(canvas, frame, model.flight.heading_rad);
-  canvas.Plate({tape.left(), tape.top()}, {tape.right(), tape.bottom()});
   {
     const Canvas::Clip inside(canvas, {tape.left(), tape.top()}, {tape.right(), tape.bottom()});
     DrawHeadingMarks(canvas, tape);

@@ -281,8 +281,8 @@ TEST(HudText, RatesOfTimeAreFactors) {
 
 TEST(HudTheme, NightColoursAreDimWithoutBlue) {
   const HudColours &day = ColoursOf(HudTheme::kDay), &night = ColoursOf(HudTheme::kNight);
-  for (const HudColour& colour : {night.text, night.quiet, night.accent, night.warning, night.plate,
-                                  night.panel, night.control, night.active}) {
+  for (const HudColour& colour : {night.text, night.quiet, night.accent, night.warning, night.panel,
+                                  night.control, night.active}) {
     EXPECT_LT(colour[2], 0.1F);
     EXPECT_LT(colour[1], 0.5F * day.text[1]);
     EXPECT_GE(colour[0], colour[1]);
@@ -307,12 +307,12 @@ double ContrastOf(const HudColour& text, const HudColour& behind) {
 
 constexpr HudColour kWhite{1.0F, 1.0F, 1.0F, 1.0F};
 
-TEST(HudTheme, TextOnPlatesIsReadableOverWhite) {
+TEST(HudTheme, TextOnPanelsIsReadableOverWhite) {
   for (const HudTheme theme : {HudTheme::kDay, HudTheme::kNight}) {
     const HudColours& colours = ColoursOf(theme);
     for (const HudColour& colour : {colours.text, colours.quiet, colours.accent, colours.warning}) {
-      for (const HudColour& plate : {colours.plate, colours.panel})
-        EXPECT_GE(ContrastOf(colour, Over(kWhite, plate)), 4.5) << colour[0] << " " << colour[1];
+      EXPECT_GE(ContrastOf(colour, Over(kWhite, colours.panel)), 4.5)
+          << colour[0] << " " << colour[1];
     }
   }
 }

@@ -273,8 +273,8 @@ bool IsLetter(const ImDrawVert* v) {
 
 enum class Of { kInstruments, kPanels };
 
-/// Takes all letters out of what Dear ImGui has laid out, and tells of those of instruments or
-/// panels that are no shadow. Instruments are the first list, under the panels.
+/// Takes all letters out of what Dear ImGui has laid out, except the black ones of outlines, and tells of
+/// those of instruments or panels. Instruments are the first list, under the panels.
 std::vector<Letter> TakeLetters(Of which) {
   std::vector<Letter> letters;
   ImDrawData& data = *ImGui::GetDrawData();
@@ -288,10 +288,10 @@ std::vector<Letter> TakeLetters(Of which) {
       }
       const ImVec4 colour = ImGui::ColorConvertU32ToFloat4(v[0].col);
       const bool is_wanted = (list == 0) == (which == Of::kInstruments);
-      if (is_wanted && colour.x + colour.y + colour.z > 0.0F)
-        letters.push_back({v[0].pos, v[2].pos, {colour.x, colour.y, colour.z}});
-      for (int corner = 0; corner < 4; ++corner) v[corner].col = 0;
       i += 4;
+      if (colour.x + colour.y + colour.z == 0.0F) continue;
+      if (is_wanted) letters.push_back({v[0].pos, v[2].pos, {colour.x, colour.y, colour.z}});
+      for (int corner = 0; corner < 4; ++corner) v[corner].col = 0;
     }
   }
   return letters;
