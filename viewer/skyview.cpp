@@ -15,6 +15,7 @@
 #include "renderer/camera/track_file.h"
 #include "renderer/camera/track_names.h"
 #include "renderer/scene/places.h"
+#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/scene/scene_weather.h"
 #include "renderer/series/frame_times.h"
@@ -81,13 +82,10 @@ EyePlacement PlacementOf(const SkyviewOptions& options) {
   return placement;
 }
 
-/// Returns the scene without what is not drawn in flight, and writes messages about it.
-Scene Drawable(Scene scene) {
+/// Returns the scene with the clouds of --clouds, if there are any, and writes messages about its weather.
+Scene WithClouds(Scene scene, const SkyviewOptions& options) {
   for (const std::string& note : scene.weather.notes) Warn(note);
-  if (scene.clouds.empty()) return scene;
-  Log(fmt::format("skyview: the clouds of {} are not drawn; skyseries draws them\n",
-                  scene.clouds.front().name.substr(0, scene.clouds.front().name.rfind(": "))));
-  scene.clouds.clear();
+  if (options.clouds) scene.clouds = CloudsFromText(*options.clouds);
   return scene;
 }
 
@@ -311,8 +309,9 @@ int Run(const SkyviewOptions& options) {
   if (options.video) RequireVideo(*options.video);
   std::optional<Track> flown;  // --path, if it is a track
   if (options.replay && IsTrack(*options.replay)) flown = ReadTrackWithNote(*options.replay);
-  const Scene scene = Drawable(SceneOf(options, flown));
+  Scene scene = WithClouds(SceneOf(options, flown), options);
   const UtcTime start = StartOf(options, scene);
+  if (!scene.clouds.empty()) scene.cloud_day = CloudDayNear(scene, start);
   std::optional<CameraPath> path;
   if (options.replay && !flown) path = ReadFlight(*options.replay);
   const bool has_land = scene.terrain.kind != TerrainSource::Kind::kNone;

@@ -11,6 +11,7 @@
 #include "lut/cli/metar_option.h"
 #include "lut/image/look_options.h"
 #include "lut/image/picture_format.h"
+#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/scene/scene_weather.h"
 #include "viewer/input/action.h"
@@ -40,6 +41,7 @@ struct SkyviewOptions {
   SceneWeather weather;  // replaces that of the scene
   std::optional<double> latitude, longitude, altitude, heading, pitch;
   std::optional<std::string> time, screenshot, record, replay, video, place, track;
+  std::optional<std::string> clouds;  // see CloudsFromText; replace those of the scene
   std::vector<std::string> dem;
   std::optional<double> benchmark;  // seconds
   double fps = 30.0;                // frame rate of the film
@@ -110,6 +112,11 @@ inline void AddAirOptions(CLI::App& app, SkyviewOptions& options) {
   app.add_option("--station-height", options.weather.station_height_m, kStationHeightHelp)
       ->check(InRange(kStationHeights_m.first, kStationHeights_m.second))
       ->needs("--metar");
+  app.add_option("--clouds", options.clouds,
+                 "Clouds, instead of those of the scene: none, fair (cumulus 0.25), broken "
+                 "(stratocumulus 0.75), high (cirrus 0.5), overcast (stratus), or layers separated "
+                 "by commas, each a genus and its cover: \"cumulus 0.3, cirrus 0.5\"")
+      ->check(ReadableBy([](const std::string& text) { (void)CloudsFromText(text); }));
 }
 
 inline void AddPictureOptions(CLI::App& app, SkyviewOptions& options) {

@@ -181,6 +181,8 @@ class CloudField {
 
   /// Samples along a straight line: cloud_line.h.
   class Line;
+  /// The bricks as they are stored: cloud_bricks.h.
+  class StoredBricks;
 
  private:
   static constexpr int kSide = 8, kCorners = 9, kBrick = kCorners * kCorners * kCorners;

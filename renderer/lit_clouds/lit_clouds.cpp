@@ -437,6 +437,19 @@ Spectrum LitClouds::SkyOnClouds(std::size_t layer) const {
   return relative;
 }
 
+LitClouds::LightAround LitClouds::AroundLayer(std::size_t layer, const glm::dvec3& point) const {
+  return AroundLayer(layer, LocalLightAt(geometry_, point, light_));
+}
+
+std::vector<LitClouds::InterfaceLight> LitClouds::Interfaces() const {
+  std::vector<InterfaceLight> all;
+  for (std::size_t i = 0; i <= layers(); ++i) {
+    const double low_m = i > 0 ? MiddleOf(i - 1) : -std::numeric_limits<double>::infinity();
+    all.push_back({low_m, air_left_[i], added_[i], diffuse_[i]});
+  }
+  return all;
+}
+
 LitClouds::LightAround LitClouds::AroundLayer(std::size_t layer, const LocalLight& sun) const {
   const MultipleScattering& orders = air_.multiple_scattering();
   // Irradiance of a level surface that faces the sky or the ground.

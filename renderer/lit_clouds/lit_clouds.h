@@ -190,6 +190,23 @@ class LitClouds {
   [[nodiscard]] SkyThroughMedia SkyOnSurface(const glm::dvec3& point, double cos_up,
                                              SkyThroughMedia above) const;
 
+  /// Radiances per unit solar irradiance [1/sr].
+  struct LightAround {
+    Spectrum sky, ground;
+  };
+  /// Returns the mean light from above and from below in a layer. @param point  in it.
+  [[nodiscard]] LightAround AroundLayer(std::size_t layer, const glm::dvec3& point) const;
+
+  /// Mean light below, between or above layers.
+  struct InterfaceLight {
+    double low_m;      // altitude from which on it holds; -infinity below the lowest layer
+    float air_left;    // fraction of the light that the air below sends in a clear sky
+    Spectrum added;    // irradiance of a level surface, per unit solar irradiance
+    Spectrum diffuse;  // factor on light that the air scatters more than once
+  };
+  /// Returns it from the ground up: one more than there are layers.
+  [[nodiscard]] std::vector<InterfaceLight> Interfaces() const;
+
   /// Returns the mean light at an altitude, for media there.
   [[nodiscard]] LightPastClouds MeanAt(double altitude_m) const;
 
@@ -239,11 +256,7 @@ class LitClouds {
   /// Returns the mean radiance of a clear sky along rays through a layer, weighted by what the layer
   /// takes away, relative to that of an even sky with the same irradiance of a level surface.
   [[nodiscard]] Spectrum SkyOnClouds(std::size_t layer) const;
-  /// Radiances per unit solar irradiance [1/sr].
-  struct LightAround {
-    Spectrum sky, ground;
-  };
-  /// Returns the mean light from above and from below in a layer. @param sun  at a place in it.
+  /// @param sun  at a place in the layer.
   [[nodiscard]] LightAround AroundLayer(std::size_t layer, const LocalLight& sun) const;
   /// Returns what layers add to the light of the sky on level ground, where they leave air_left_ of it.
   [[nodiscard]] Spectrum AddedAt(std::size_t interface, double altitude_m) const;

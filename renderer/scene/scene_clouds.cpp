@@ -150,7 +150,8 @@ std::vector<SceneCloudField> CloudFieldsOf(const Scene& scene, double time_s) {
   RequireCloudsFit(scene.clouds, MemoryOfMachine());
   std::vector<SceneCloudField> fields;
   for (const SceneCloud& cloud : scene.clouds)
-    fields.push_back({FieldOf(cloud, scene, time_s), IsOfIce(cloud.options.genus)});
+    fields.push_back(
+        {FieldOf(cloud, scene, time_s), IsOfIce(cloud.options.genus), cloud.options.wind_m_per_s});
   std::stable_sort(fields.begin(), fields.end(),
                    [](const SceneCloudField& a, const SceneCloudField& b) {
                      return a.field.base_altitude_m() < b.field.base_altitude_m();

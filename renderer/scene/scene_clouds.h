@@ -13,6 +13,7 @@
 //   overcast stratus, 8 of 8
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +28,8 @@ namespace alpenglow::renderer {
 /// at its own place; without a time of the scene, at 00:00 UTC of CloudDayOf.
 struct SceneCloudField {
   CloudField field;
-  bool is_of_ice;  // crystals; otherwise droplets
+  bool is_of_ice;                // crystals; otherwise droplets
+  glm::dvec2 wind_m_per_s{0.0};  // to the east and to the north
 };
 
 /// Returns the fields of a scene's clouds, ordered by their bases, the lowest first. Throws

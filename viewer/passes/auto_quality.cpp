@@ -134,6 +134,7 @@ PaintSizes SizesOf(Quality quality) {
       sizes.shade = kLowShade;
       sizes.lamps = kLowLamps;
       sizes.layer_map = kCoarseLayerMap;
+      sizes.clouds = kLowClouds;
       sizes.dropped_octaves = 1;
       break;
     case Quality::kMedium:
@@ -146,6 +147,7 @@ PaintSizes SizesOf(Quality quality) {
       sizes.shade = kHighShade;
       sizes.lamps = kHighLamps;
       sizes.layer_map = kFineLayerMap;
+      sizes.clouds = kHighClouds;
       sizes.sky_by_pixel = true;
       break;
   }

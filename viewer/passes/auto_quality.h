@@ -11,6 +11,7 @@
 
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/media/layer_map.h"
+#include "viewer/clouds/cloud_quality.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/shade/shafts.h"
 
@@ -111,6 +112,7 @@ struct PaintSizes {
   LampQuality lamps = kMediumLamps;
   std::size_t most_lamps = kMostGpuLamps;
   LayerMapSize layer_map;
+  CloudQuality clouds = kMediumClouds;
   int dropped_octaves = 0;    // omitted octaves of the ground's detail
   bool sky_by_pixel = false;  // SkyByPixel instead of vertex light, once it is ready
 };

@@ -19,7 +19,8 @@ constexpr double kLong_s = 1e3;  // time after which all fades have ended
 // Returns the ground for lamps and media, which must exist before the first picture. A landing light
 // does not need it.
 SceneGround LampGroundOf(const Scene& scene) {
-  if (!scene.lights.empty() || !scene.layers.empty() || scene.town_zenith) return LoadGround(scene);
+  if (!scene.lights.empty() || !scene.layers.empty() || !scene.clouds.empty() || scene.town_zenith)
+    return LoadGround(scene);
   Place foot = scene.place;
   foot.height_m = 0.0;
   return {LocalFrame(EllipsoidOf(scene.medium), foot), std::nullopt, 0.0, "", true};
@@ -74,6 +75,7 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       ground_textures_(air_.air()->multiple_scattering()),
       shade_(fixed_.ellipsoid),
       media_(LocalMedia(scene, fixed_.lamp_ground, MediumAt(scene)), sizes.layer_map, kMediaUnits),
+      clouds_(scene, fixed_.lamp_ground),
       awaits_land_(!land.IsEmpty()) {
   if (!land.range_centre) land_->BeginReading(first.eye.place);
   shade_.SetSize(sizes.shade.size);
@@ -210,6 +212,7 @@ void PaintedScene::Update(const PaintedView& view, const FrameSky& sky, double s
   if (sizes_.has_shafts)
     shade_.Follow(view.eye.place, lights.front(), MostShareOfKeyLight(sky), kShadeUnit);
   KeepUpMedia(view, lights, Pace::kFollow);
+  clouds_.Follow(air_here_, view.eye.place, view.now, lights.front(), seconds);
 }
 
 void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& lights, int samples) {
@@ -225,6 +228,7 @@ void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& li
   KeepUpEdges(view, lights.front(), kLong_s);
   if (sizes_.has_shafts) shade_.WaitUntilReady(view.eye.place, lights.front(), kShadeUnit);
   KeepUpMedia(view, lights, Pace::kWait);
+  clouds_.WaitUntilReady(air_here_, view.eye.place, view.now, lights.front());
   awaits_land_ = false;
 }
 

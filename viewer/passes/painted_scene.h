@@ -15,6 +15,7 @@
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
+#include "viewer/clouds/cloud_follower.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/open_sky_follower.h"
 #include "viewer/land/landscape.h"
@@ -110,6 +111,9 @@ class PaintedScene {
     return source == casts_ && (momentary_edges_ == 1.0 ? land_->pass().HasHorizon() : has_edges_);
   }
   [[nodiscard]] const SceneMedia& media() const { return media_; }
+  [[nodiscard]] const CloudFollower& clouds() const { return clouds_; }
+  /// Replaces the clouds. The new ones fade in when they are made.
+  void Replace(const std::vector<SceneCloud>& clouds) { clouds_.Use(clouds); }
 
  private:
   /// Followers either do their work in the background (Update) or complete it (WaitUntilReady).
@@ -140,6 +144,7 @@ class PaintedScene {
   SkyByPixel sky_by_pixel_;
   ShadeFollower shade_;
   SceneMedia media_;
+  CloudFollower clouds_;
   LightSource casts_ = LightSource::kSun;  // the shadow-casting light
   bool has_edges_ = false;                 // whether vertices have shadow edges for casts_
   double momentary_edges_ = 0.0;           // MomentaryEdges::share

@@ -26,14 +26,16 @@ namespace alpenglow::viewer {
 namespace {
 
 ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
-  return {"stage",
-          fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
-                      "#define OPEN_SKY_PASS 3\n"
-                      "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
-                      "#define HAS_MEDIA {}\n#define SKY_BY_PIXEL {}\n#define HAS_NIGHT {}\n",
-                      static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,
-                      stage.has_lamps ? 1 : 0, kind.media.has_layer ? 1 : 0,
-                      stage.sky_by_pixel ? 1 : 0, stage.has_night ? 1 : 0)};
+  return {
+      "stage",
+      fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
+                  "#define OPEN_SKY_PASS 3\n"
+                  "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
+                  "#define HAS_MEDIA {}\n#define SKY_BY_PIXEL {}\n#define HAS_NIGHT {}\n"
+                  "#define HAS_CLOUDS {}\n",
+                  static_cast<int>(stage.pass), stage.has_shade ? 1 : 0, stage.has_lamps ? 1 : 0,
+                  kind.media.has_layer ? 1 : 0, stage.sky_by_pixel ? 1 : 0, stage.has_night ? 1 : 0,
+                  stage.cloud_layers > 0 ? 1 : 0)};
 }
 
 void Append(std::vector<ShaderPiece>& texts, std::vector<ShaderPiece> pieces) {
@@ -47,6 +49,27 @@ std::vector<ShaderPiece> AirTexts() {
       SharedTexts(), {"viewer/shaders/view/block.glsl", "viewer/shaders/view/refracted_rays.glsl"});
   Append(texts, AirTableTexts());
   return texts;
+}
+
+CloudPass ConnectedClouds() {
+  const auto colours = [](const CloudPass::Kind& kind) {
+    std::vector<ShaderPiece> texts;
+    if (kind.two_lights) texts.push_back({"lights", "#define TWO_LIGHTS\n"});
+    Append(texts, AirTexts());
+    Append(texts, WithViewerPieces({}, {"viewer/shaders/air/block.glsl",
+                                        "viewer/shaders/air/sun_light.glsl"}));
+    Append(texts, CloudTexts(kind.layers));
+    ShaderProgram made = FullScreenProgram(
+        WithViewerPieces(std::move(texts), {"viewer/shaders/clouds/colour.frag.glsl"}));
+    made.BindBlock("View", kViewBinding);
+    made.BindBlock("Air", kAirBinding);
+    AirTextures::Prepare(made, kAirUnit, kTablesBinding);
+    AirTextures::PrepareOther(made, kOtherAirUnit, kOtherTablesBinding);
+    return made;
+  };
+  return {WithViewerPieces(SharedTexts(), {"viewer/shaders/view/block.glsl",
+                                           "viewer/shaders/view/refracted_rays.glsl"}),
+          kViewBinding, colours, kCloudUnits};
 }
 
 std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStage& stage) {
@@ -67,6 +90,10 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
            "viewer/shaders/gbuffer/inverse_depth.glsl", "viewer/shaders/air/sun_light.glsl"}));
   if (stage.pass == PictureStage::Pass::kDisks)
     add(WithViewerPieces({}, {"viewer/shaders/view/refracted_disks.glsl"}));
+  if (stage.cloud_layers > 0) {
+    add(CloudTexts(stage.cloud_layers));
+    add(WithViewerPieces({}, {"viewer/shaders/clouds/picture.glsl"}));
+  }
   add(GroundTexts(kind.material, kind.land));
   if (stage.sky_by_pixel) add(SkyByPixelTexts());
   add(ShaftTexts());
@@ -96,6 +123,7 @@ int TexturesOf(const PictureKind& kind, const PictureStage& stage) {
   if (stage.has_shade) textures += kind.media.has_layer ? 2 : 1;
   if (stage.has_lamps) textures += 6;
   if (stage.has_night && !is_land) textures += 1;
+  if (stage.cloud_layers > 0) textures += is_ground ? 4 : 2;
   return textures;
 }
 
@@ -288,8 +316,12 @@ void ConnectMaps(const ShaderProgram& program) {
 }  // namespace
 
 PicturePrograms::PicturePrograms(const PaintedScene& scene, const LampPainter& lamps,
-                                 const ShaftPass& shafts)
-    : scene_(scene), lamps_(lamps), shafts_(shafts), units_(TextureUnitsOfDriver()) {}
+                                 const ShaftPass& shafts, const CloudPass& clouds)
+    : scene_(scene),
+      lamps_(lamps),
+      shafts_(shafts),
+      clouds_(clouds),
+      units_(TextureUnitsOfDriver()) {}
 
 PictureKind PicturePrograms::Kind() const {
   return {scene_.fixed().material, lamps_, scene_.fixed().land_kind, scene_.media().kind()};
@@ -314,6 +346,7 @@ ShaderProgram PicturePrograms::Made(const PictureStage& stage) const {
   ConnectMaps(made);
   if (stage.has_lamps) lamps_.Connect(made);
   scene_.media().Connect(made);
+  if (stage.cloud_layers > 0) clouds_.Connect(made);
   return made;
 }
 
@@ -327,6 +360,7 @@ void PicturePrograms::Paint(const PictureStage& stage) {
   const ShaderProgram& program = Of(stage);
   if (stage.has_shade) shafts_.Bind(program, kShaftUnit);
   program.Use();
+  if (stage.cloud_layers > 0) clouds_.Bind(program);
   glDepthFunc(DepthTestOf(stage.pass));
   DrawFullScreen(program, no_vertices_);
   ready_.insert(stage);

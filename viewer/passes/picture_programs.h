@@ -27,6 +27,7 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
+#include "viewer/clouds/cloud_pass.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/ground/ground_block.h"
@@ -58,10 +59,13 @@ enum PictureUnit {
   kMediaUnit = kLampUnit + 6,
   kNightUnit = kMediaUnit + 4,
   kSkyByPixelUnit = kNightUnit + 1,
+  kCloudUnit = kSkyByPixelUnit + SkyByPixel::kUnits,
 };
 
 inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
 inline constexpr MediaUnits kMediaUnits{kMediaBinding, kMediaUnit};
+/// The passes before the picture use the units of lamps and media, which are bound after them.
+inline constexpr CloudUnits kCloudUnits{kCloudsBinding, kCloudUnit, kSurfaceUnit, kLampUnit};
 
 /// Identifies one program of the picture. kUnoccludedSky is the sky above the horizon, see
 /// RowsOfPlanet.
@@ -72,6 +76,7 @@ struct PictureStage {
   bool two_lights = false, has_night = false;
   bool sky_by_pixel = false;   // SkyByPixel, for land only
   bool other_has_set = false;  // see view/lights.glsl
+  int cloud_layers = 0;
 
   /// Returns the stage of another pass, without properties that this pass does not have.
   [[nodiscard]] PictureStage In(Pass other) const {
@@ -114,6 +119,8 @@ struct FittingStage {
 
 /// Returns the first of these texts: the view and the medium.
 [[nodiscard]] std::vector<ShaderPiece> AirTexts();
+/// Returns the pass of clouds with its programs connected.
+[[nodiscard]] CloudPass ConnectedClouds();
 
 /// The light of a picture. Of a single light of the sky, "the second light" is a copy, which no
 /// program reads.
@@ -145,7 +152,8 @@ class PictureBlocks {
 class PicturePrograms {
  public:
   /// The arguments must outlive this object.
-  PicturePrograms(const PaintedScene& scene, const LampPainter& lamps, const ShaftPass& shafts);
+  PicturePrograms(const PaintedScene& scene, const LampPainter& lamps, const ShaftPass& shafts,
+                  const CloudPass& clouds);
 
   /// Returns the stage that the driver of the current context can link, and tells the user once what
   /// pictures lack because of it.
@@ -174,6 +182,7 @@ class PicturePrograms {
   const PaintedScene& scene_;
   const LampPainter& lamps_;
   const ShaftPass& shafts_;
+  const CloudPass& clouds_;
   int units_;                      // of the textures of a fragment stage
   std::set<std::string> omitted_;  // as told
   std::map<PictureStage, ShaderProgram> made_;

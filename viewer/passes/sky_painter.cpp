@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sky_bodies.h"
@@ -67,10 +69,11 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
              OnOsculatingSphere(scene.medium, scene.place.latitude_rad())),
       lamp_painter_(lamps_, sizes.lamps, kLampUnits),
       shaft_pass_(ConnectedShafts(scene_)),
+      cloud_pass_(ConnectedClouds()),
       night_sky_map_({scene.town_zenith,
                       std::max(GroundHeightUnder(scene_.fixed().lamp_ground, scene.place), 0.0)}),
       has_towns_(scene.town_zenith.has_value()),
-      programs_(scene_, lamp_painter_, shaft_pass_) {
+      programs_(scene_, lamp_painter_, shaft_pass_, cloud_pass_) {
   CheckGl("SkyPainter");
 }
 
@@ -153,6 +156,14 @@ void SkyPainter::PaintShafts(const Frame& frame) {
                     frame.view.height, kSurfaceUnit, kShadeUnit, scene_.sizes().shade.detail);
 }
 
+void SkyPainter::PaintClouds(const Frame& frame) {
+  if (!scene_.clouds().IsShown()) return;
+  Begin("clouds");
+  cloud_pass_.Paint(scene_.clouds(), scene_.clouds().BlockFor(frame.view.eye.place, frame.view.now),
+                    frame.lights().size() > 1, frame.view.width, frame.view.height,
+                    scene_.sizes().clouds);
+}
+
 void SkyPainter::PaintLamps(const Frame& frame) {
   if (!HasLamps()) return;
   Begin("lamps");
@@ -205,10 +216,29 @@ SkyPainter::DisksInAir SkyPainter::InAir(const Frame& frame) {
   return seen;
 }
 
+PictureStage SkyPainter::StageOfDisks() const {
+  PictureStage stage{PictureStage::Pass::kDisks};
+  stage.cloud_layers = static_cast<int>(scene_.clouds().layers());
+  return stage;
+}
+
+namespace {
+
+// Returns the matrix from directions to points of a picture, times the distance along the view.
+glm::mat3 ScreenFromDirection(const PaintedView& view) {
+  const ViewAxes axes = AxesOf(view);
+  const auto along = [](const glm::dvec3& axis) { return axis / glm::dot(axis, axis); };
+  const glm::dvec3 x = along(axes.right) - view.part.x * view.part.z * axes.forward;
+  const glm::dvec3 y = along(axes.up) - view.part.y * view.part.w * axes.forward;
+  return glm::transpose(glm::mat3(x, y, axes.forward));
+}
+
+}  // namespace
+
 // @param shares  factors of the light of sun and moon.
 void SkyPainter::DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares) {
   const MoonDisk& moon = seen.moon;
-  const ShaderProgram& program = programs_.Of({PictureStage::Pass::kDisks});
+  const ShaderProgram& program = programs_.Of(StageOfDisks());
   program.Use();
   glUniform4f(program.Uniform("moon"), static_cast<float>(moon.direction.seen.x),
               static_cast<float>(moon.direction.seen.y), static_cast<float>(moon.direction.seen.z),
@@ -223,6 +253,10 @@ void SkyPainter::DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares)
               static_cast<float>(moon.earthshine_per_irradiance));
   glUniform2f(program.Uniform("disk_shares"), static_cast<float>(shares.x),
               static_cast<float>(shares.y));
+  if (painted_) {
+    const glm::mat3 screen = ScreenFromDirection(painted_->view);
+    glUniformMatrix3fv(program.Uniform("cloud_screen_from_direction"), 1, GL_FALSE, &screen[0][0]);
+  }
   SendAir(program, seen.refracted_sun != nullptr ? *seen.refracted_sun : kUnbent,
           seen.refracted_moon != nullptr ? *seen.refracted_moon : kUnbent);
 }
@@ -244,7 +278,9 @@ std::vector<PictureStage> StagesAfter(const PictureStage& stage, const FrameSky&
   for (const PictureStage& one : next)
     for (const PictureStage::Pass pass : {kSky, kUnoccludedSky, kLand})
       stages.push_back(one.In(pass));
-  stages.insert(stages.begin() + 3, {kDisks});
+  PictureStage disks{kDisks};
+  disks.cloud_layers = stage.cloud_layers;
+  stages.insert(stages.begin() + 3, disks);
   return stages;
 }
 
@@ -339,7 +375,7 @@ void SkyPainter::PaintDisks(const Frame& frame, const PixelRay& ray) {
   const Adding adding(1.0 / ray.of);
   for (const PixelBox& box : BoxesAround(disks, frame.view)) {
     const Scissor within(box);
-    programs_.Paint({PictureStage::Pass::kDisks});
+    programs_.Paint(StageOfDisks());
   }
 }
 
@@ -367,7 +403,7 @@ void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const Frame& 
   glClear(GL_COLOR_BUFFER_BIT);
   DescribeDisks(seen, shares);
   const BesideLand beside;
-  programs_.Paint({PictureStage::Pass::kDisks});
+  programs_.Paint(StageOfDisks());
 }
 
 // Adds the light of the other disks.
@@ -453,6 +489,7 @@ PictureStage SkyPainter::StageOf(const Frame& frame) {
                         scene_.air_textures(other.body).IsOfSetSun();
   stage.has_night = HasNightSkyMap() && night_sky_map_.HasAny();
   stage.sky_by_pixel = HasSkyByPixel(scene_, frame.lights());
+  stage.cloud_layers = static_cast<int>(scene_.clouds().layers());
   return programs_.Fitting(stage);
 }
 
@@ -491,6 +528,7 @@ void SkyPainter::PaintStars(const Frame& frame) {
 void SkyPainter::PaintSample(const Frame& frame, Bodies bodies, const PixelRay& ray) {
   BindLights(frame, ray);
   PaintLand(frame);
+  PaintClouds(frame);
   BindMaps(frame);
   PaintShafts(frame);
   PaintLamps(frame);

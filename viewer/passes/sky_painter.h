@@ -53,6 +53,8 @@ class SkyPainter {
   [[nodiscard]] bool AwaitsLand() const { return scene_.AwaitsLand(); }
   /// Changes the land to other land of the same kind.
   void Replace(const LandSource& land) { scene_.Replace(land); }
+  /// Changes the clouds. The new ones fade in when they are made.
+  void Replace(const std::vector<SceneCloud>& clouds) { scene_.Replace(clouds); }
 
   /// Sets a lamp that moves with the eye; empty: none.
   void SetLandingLight(const std::optional<LandingLight>& light) { lamps_.SetLandingLight(light); }
@@ -110,6 +112,7 @@ class SkyPainter {
   void PrepareLamps(const Frame& frame);
   [[nodiscard]] DisksInAir InAir(const Frame& frame);
   void DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares);
+  [[nodiscard]] PictureStage StageOfDisks() const;
   [[nodiscard]] int RowsUnderHorizon(const Frame& frame) const;
   void PaintSample(const Frame& frame, Bodies bodies, const PixelRay& ray);
   [[nodiscard]] static LandLook LookOfLand(const Frame& frame);
@@ -117,6 +120,7 @@ class SkyPainter {
   /// Returns whether terrain shadows the air from the key light, and that effect is drawn.
   [[nodiscard]] bool HasShade(const Frame& frame) const;
   void PaintShafts(const Frame& frame);
+  void PaintClouds(const Frame& frame);
   void PaintLamps(const Frame& frame);
   [[nodiscard]] LightsOfView LightsOf(const Frame& frame);
   void BindLights(const Frame& frame, const PixelRay& ray);
@@ -143,6 +147,7 @@ class SkyPainter {
   SceneLamps lamps_;
   LampPainter lamp_painter_;
   ShaftPass shaft_pass_;
+  CloudPass cloud_pass_;
   SmallDiskPainter small_disk_painter_;
   StarPainter stars_;
   NightSkyMapFollower night_sky_map_;

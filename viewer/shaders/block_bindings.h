@@ -21,6 +21,7 @@ enum BlockBinding : GLuint {
   kOtherTablesBinding,
   kOtherGroundLightBinding,
   kLandBinding,
+  kCloudsBinding,
 };
 
 }  // namespace alpenglow::viewer

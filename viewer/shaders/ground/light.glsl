@@ -51,7 +51,11 @@ vec4 SunAcross(GroundPlace at, vec3 mesh_normal, float sun_x) {
   if (HasSet()) return vec4(0.0);
   vec2 disk = DiskOver(at, sun.xyz);
   float over_plane = dot(mesh_normal, sun.xyz) / sun.w;
-  return disk.x * SunlightOverEdge(min(sun_x, over_plane)) * BeamOfSun(at.altitude, disk.y);
+  vec4 beam = disk.x * SunlightOverEdge(min(sun_x, over_plane)) * BeamOfSun(at.altitude, disk.y);
+#ifdef CLOUD_LAYERS
+  beam *= BeamLeftByClouds(InCloudFrame(at.point, at.altitude));
+#endif
+  return beam;
 }
 
 // Returns the normal for lighting, which includes relief finer than the mesh if there is any.

@@ -7,7 +7,7 @@
 //   TWO_LIGHTS    defined if there is a second light, which casts no shadows (frame_sky.h)
 //   OTHER_HAS_SET  defined if that light has set (view/lights.glsl)
 //   HAS_NIGHT     light of the night sky on land, air and sky
-//   HAS_SHADE, HAS_LAMPS, HAS_MEDIA
+//   HAS_SHADE, HAS_LAMPS, HAS_MEDIA, HAS_CLOUDS
 //   SKY_BY_PIXEL  irradiance by the sky on land is computed here (sky_by_pixel/irradiance.glsl),
 //                 not by vertex
 in vec2 screen;
@@ -79,6 +79,9 @@ vec4 SunlitGround(SeenGround seen, float sun_x, vec4 sky, vec3 to_eye) {
 #if HAS_MEDIA
   float altitude = seen.at.altitude;
   sky = SkyLeftByMedia(altitude) * sky + MediaOnSurface(altitude, dot(seen.normal, seen.at.up));
+#endif
+#if HAS_CLOUDS
+  sky = SkyUnderClouds(sky, seen.at.altitude, dot(seen.normal, seen.at.up));
 #endif
   return SentOn(seen, sun_x, sky, to_eye);
 }
@@ -166,6 +169,9 @@ void main() {
   picture.rgb += LampRgb(left * LampsReflected(land.seen, place, direction)) +
                  LampAirlightRgb(direction, LampRayEnd(direction, surface.w));
 #endif
+#if HAS_CLOUDS
+  picture.rgb = BehindClouds(picture.rgb, surface.w);
+#endif
 }
 #endif
 
@@ -191,7 +197,7 @@ vec4 SkyInLight(vec3 direction, vec3 straight) {
 
 #if PASS == SKY_PASS
 // True if the sky table holds the planet's ground without changes.
-#define PLANET_IS_PLAIN (!HAS_MEDIA && GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_WATER)
+#define PLANET_IS_PLAIN (!HAS_MEDIA && !HAS_CLOUDS && GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_WATER)
 
 // A direction in which the bare planet may be seen, with all that does not depend on a light.
 struct PlanetPixel {
@@ -262,6 +268,9 @@ void main() {
   picture.rgb += LampAirlightRgb(direction, LampRayEnd(direction, 0.0));
   if (planet.is_seen) picture.rgb += LampRgb(PlanetUnderLamps(planet));
 #endif
+#if HAS_CLOUDS
+  picture.rgb = BehindClouds(picture.rgb, 0.0);
+#endif
 }
 #endif
 
@@ -289,6 +298,9 @@ void main() {
 #if HAS_LAMPS
   picture.rgb += LampAirlightRgb(direction, LampRayEnd(direction, 0.0));
 #endif
+#if HAS_CLOUDS
+  picture.rgb = BehindClouds(picture.rgb, 0.0);
+#endif
 }
 #endif
 #endif
@@ -302,6 +314,9 @@ void main() {
   vec4 radiance = SeesPlanet(direction) ? vec4(0.0) : disks;
 #if HAS_MEDIA
   radiance *= MediaTransmittance(direction, 1e3);
+#endif
+#if HAS_CLOUDS
+  radiance *= BeamBehindClouds(direction);
 #endif
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
 }

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// Provides the clouds of a scene for drawing: fields, sun maps and solutions of the renderer are made
+// on a thread beside drawing, for the time and the light of the moment. Drawing moves the fields with
+// the wind since the time for which they were made, and fades from one solution to the next.
+#pragma once
+
+#include <glm/mat2x2.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "atmosphere/base/async_value.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "lut/multiple_scattering/solved_air.h"
+#include "renderer/illumination/distant_light.h"
+#include "renderer/scene/scene.h"
+#include "renderer/surface/scene_ground.h"
+#include "viewer/clouds/cloud_texels.h"
+#include "viewer/clouds/cloud_textures.h"
+#include "viewer/flight/flight.h"
+#include "viewer/layer.h"
+
+namespace alpenglow::viewer {
+
+/// What the light of clouds depends on.
+struct CloudMoment {
+  std::shared_ptr<const SolvedAir> air;  // on the sphere under the scene
+  std::shared_ptr<const Scene> scene;
+  UtcTime now;
+  DistantLight light;  // in the frame of the scene
+};
+
+/// Colours of the light of clouds, for unit solar irradiance.
+struct CloudColours {
+  std::vector<glm::vec4> sky_low, sky_high, ground_low, ground_high;  // of each layer
+  struct Interface {
+    float low_m, left;  // see LitClouds::InterfaceLight
+    glm::vec4 added, diffuse;
+  };
+  std::vector<Interface> interfaces;
+};
+
+/// Clouds of one moment.
+struct MadeClouds {
+  CloudMoment of;
+  std::shared_ptr<const CloudTexels> texels;
+  CloudColours colours;
+};
+
+/// Place of an eye in the flat frame of the clouds.
+struct EyeInClouds {
+  glm::dvec3 at;    // x, y along the ground, and the altitude [m]
+  double turn_rad;  // from the axes of the eye to those of the clouds, counter-clockwise
+};
+
+class CloudFollower {
+ public:
+  /// @param ground  of the scene.
+  CloudFollower(const Scene& scene, const SceneGround& ground);
+
+  /// Returns whether the scene has clouds.
+  [[nodiscard]] bool HasAny() const { return !scene_->clouds.empty(); }
+  /// Returns whether clouds are drawn now.
+  [[nodiscard]] bool IsShown() const { return shown_ != nullptr; }
+  /// Returns the number of layers that are drawn.
+  [[nodiscard]] std::size_t layers() const;
+
+  /// Replaces the clouds of the scene. The new ones fade in when they are made.
+  void Use(const std::vector<SceneCloud>& clouds);
+  [[nodiscard]] const std::vector<SceneCloud>& clouds() const { return scene_->clouds; }
+
+  /// Takes finished clouds and requests missing ones. Call it once a frame.
+  /// @param light  as seen from the eye. @param seconds  since the last call.
+  void Follow(const std::shared_ptr<const SolvedAir>& air, const Place& eye, const UtcTime& now,
+              const DistantLight& light, double seconds);
+  /// Waits for the clouds of the moment.
+  void WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const Place& eye,
+                      const UtcTime& now, const DistantLight& light);
+
+  /// Returns the uniform block for an eye.
+  [[nodiscard]] CloudsBlock BlockFor(const Place& eye, const UtcTime& now) const;
+  [[nodiscard]] EyeInClouds EyeAt(const Place& eye) const;
+  /// Returns the extinction by clouds at a place [1/m].
+  [[nodiscard]] double ExtinctionAt(const Place& place, const UtcTime& now) const;
+
+  /// Clouds that are drawn, with their share of the picture.
+  struct Shown {
+    std::shared_ptr<CloudTextures> textures;
+    MadeClouds made;
+  };
+  [[nodiscard]] const Shown& shown() const { return *shown_; }
+  /// Returns the clouds that fade out; null: none.
+  [[nodiscard]] const Shown* earlier() const { return earlier_.get(); }
+  /// Returns the share of the shown clouds, in [0, 1].
+  [[nodiscard]] double share() const { return share_; }
+
+  /// Texture unit for uploads.
+  static constexpr int kUploadUnit = 6;
+  static constexpr double kFade_s = 1.5;
+
+ private:
+  class Maker;
+  [[nodiscard]] CloudMoment MomentOf(const std::shared_ptr<const SolvedAir>& air, const Place& eye,
+                                     const UtcTime& now, const DistantLight& light) const;
+  [[nodiscard]] static bool Suits(const CloudMoment& made, const CloudMoment& wanted);
+  void TakeOver(MadeClouds made);
+  void Show();
+
+  std::shared_ptr<const Scene> scene_;
+  LocalFrame frame_;
+  double radius_m_ = 0.0;
+  std::shared_ptr<Shown> coming_, shown_, earlier_;
+  double share_ = 1.0;
+  std::optional<AsyncValue<CloudMoment, MadeClouds>> maker_;
+};
+
+}  // namespace alpenglow::viewer

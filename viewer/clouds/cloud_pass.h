@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Draws the light of clouds before the picture: the layers along the rays of every second pixel or so
+// (clouds/march.frag.glsl), then their colours behind air (clouds/colour.frag.glsl). The programs of
+// the picture interpolate the result (clouds/picture.glsl) and take the shadows of clouds from the
+// same textures (clouds/light.glsl).
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "viewer/clouds/cloud_follower.h"
+#include "viewer/clouds/cloud_quality.h"
+#include "viewer/clouds/cloud_textures.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/gl/render_target.h"
+#include "viewer/gl/shader.h"
+#include "viewer/layer.h"
+
+namespace alpenglow::viewer {
+
+/// Returns the texts of clouds for a fragment stage of the picture.
+/// @param layers  number of layers that are drawn, >= 1.
+[[nodiscard]] std::vector<ShaderPiece> CloudTexts(int layers);
+
+/// Binding points of the data of clouds.
+struct CloudUnits {
+  GLuint block;
+  int first;    // of kTextures units that programs of the picture read
+  int surface;  // the surface map
+  int march;    // of CloudTextures::kMarchUnits units that only the passes before the picture read
+
+  static constexpr int kTextures = 4;  // light of new and of earlier clouds; clouds; their beam
+};
+
+class CloudPass {
+ public:
+  /// What programs depend on.
+  struct Kind {
+    int layers;
+    bool two_lights;
+    auto operator<=>(const Kind&) const = default;
+  };
+  /// Makes the program that gives clouds their colours, with the view, the air and its tables connected.
+  using MakeColours = std::function<ShaderProgram(const Kind& kind)>;
+
+  /// @param view  texts of the view.
+  CloudPass(std::vector<ShaderPiece> view, GLuint view_binding, MakeColours colours,
+            const CloudUnits& units);
+
+  /// Draws the clouds of a view, whose surface map is bound.
+  void Paint(const CloudFollower& clouds, const CloudsBlock& block, bool two_lights, int width,
+             int height, const CloudQuality& quality);
+  /// Connects a program of the picture.
+  void Connect(const ShaderProgram& program) const;
+  /// Binds everything for the next draw call of a program that is connected and in use.
+  void Bind(const ShaderProgram& program) const;
+
+ private:
+  using MarchKind = std::pair<int, int>;  // steps, steps towards the light
+  [[nodiscard]] const ShaderProgram& March(const CloudQuality& quality);
+  void PaintLayer(const ShaderProgram& march, const CloudFollower& clouds, std::size_t layer) const;
+
+  std::vector<ShaderPiece> view_;
+  GLuint view_binding_;
+  MakeColours make_colours_;
+  CloudUnits units_;
+  std::map<MarchKind, ShaderProgram> marches_;
+  std::map<Kind, ShaderProgram> colours_;
+  std::vector<RenderTarget> layers_;
+  std::optional<RenderTarget> clouds_;
+  int scale_ = 1;
+  GlBuffer block_;
+  GlVertexArray no_vertices_;
+};
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+// Light that one layer of clouds scatters into a ray, as CloudGather of the renderer has it, from the
+// textures of cloud_texels.h. Defined before this text: CLOUD_STEPS, the most steps of a ray, and
+// CLOUD_SUN_STEPS, the number of samples of the shape towards the sun.
+
+uniform isampler3D cloud_bricks;     // slot, or minus the distance to the nearest one [bricks]
+uniform sampler3D cloud_depth;       // atlas of 9 x 9 x 9 corners per slot
+uniform sampler2D cloud_extinction;  // [1/km], by depth and altitude
+uniform sampler3D cloud_sun_source, cloud_sky_source;  // four components per cell
+uniform sampler2D cloud_basis;       // their functions of the direction: sun, then sky
+uniform sampler2D cloud_peak;        // p_eff
+uniform sampler3D cloud_light;       // transmittance to the light
+
+uniform int layer_number;   // in the block Clouds
+uniform vec4 layer_shape;   // voxels per metre; altitude of the lowest brick [m]; metres per brick;
+                            // cells along z
+uniform vec4 layer_cells;   // of light: base over the lowest brick [m], inverse height of all [1/m];
+                            // scaled albedo w'; base of the table of extinction, unused
+uniform ivec4 layer_tiles;  // of the atlas
+uniform vec3 layer_voxels;  // of a period
+uniform vec3 beam_towards;  // unit vector to the light of the solution, in the frame of the clouds
+uniform float layer_factor[6];
+
+const float kBrickVoxels = 8.0, kBrickCorners = 9.0, kSurfaceCode = 96.0;
+const float kLeastPassed = 0.02;
+const float kLeastPeakDepth = 1e-3, kDeepestPeak = 200.0;
+
+#define LAYER_SCALE cloud_shear[layer_number].z
+
+// A sample of the shape.
+struct CloudSample {
+  int brick;         // as in cloud_bricks
+  vec3 in_brick;     // [bricks]
+  float depth;       // under the surface [m]
+  float extinction;  // [1/km]
+};
+
+// @param place  metres in the lattice.
+CloudSample CloudAt(vec3 place) {
+  vec3 voxel = (place - vec3(0.0, 0.0, layer_shape.y)) * layer_shape.x;
+  voxel.xy -= layer_voxels.xy * floor(voxel.xy / layer_voxels.xy);
+  voxel.z = clamp(voxel.z, 0.0, layer_voxels.z - 1e-3);
+  ivec3 number = ivec3(voxel / kBrickVoxels);
+  vec3 share = voxel - kBrickVoxels * vec3(number);
+  CloudSample at;
+  at.brick = texelFetch(cloud_bricks, number, 0).r;
+  at.in_brick = share / kBrickVoxels;
+  int slot = max(at.brick, 0);
+  ivec3 tile = ivec3(slot % layer_tiles.x, slot / layer_tiles.x % layer_tiles.y,
+                     slot / (layer_tiles.x * layer_tiles.y));
+  vec3 corner = (kBrickCorners * vec3(tile) + share + 0.5) / (kBrickCorners * vec3(layer_tiles.xyz));
+  float code = 255.0 * textureLod(cloud_depth, corner, 0.0).r;
+  at.depth = code - kSurfaceCode;
+  vec2 range = cloud_range[layer_number].xy;
+  vec2 size = vec2(textureSize(cloud_extinction, 0));
+  float row = (0.5 + (size.y - 1.0) * clamp((place.z - range.x) / (range.y - range.x), 0.0, 1.0)) / size.y;
+  at.extinction = textureLod(cloud_extinction, vec2((code + 0.5) / size.x, row), 0.0).r;
+  if (at.brick < 0 || at.depth <= 0.0) at.extinction = 0.0;
+  return at;
+}
+
+// Returns the distance to the border of the empty bricks around a sample [m].
+float ClearAhead(CloudSample at, vec3 direction) {
+  float reach = float(-at.brick);
+  vec3 ahead = mix(at.in_brick + (reach - 1.0), reach - at.in_brick, step(0.0, direction));
+  vec3 exit = ahead * layer_shape.z / max(abs(direction), vec3(1e-6));
+  return min(exit.x, min(exit.y, exit.z)) + 0.5;
+}
+
+// Returns the optical depth from a place to the light: by a few samples, and the map behind them.
+float DepthToLight(vec3 place, vec3 offset) {
+  float depth = 0.0, ahead = 0.0;
+#if CLOUD_SUN_STEPS > 0
+  const float kLength = 30.0;
+  for (int i = 0; i < CLOUD_SUN_STEPS; ++i) {
+    float step_m = i == 0 ? kLength : 2.0 * kLength;
+    depth += 1e-3 * step_m * CloudAt(place + (ahead + 0.5 * step_m) * beam_towards).extinction;
+    ahead += step_m;
+  }
+#endif
+  float left = LeftByLayer(cloud_light, layer_number, offset + ahead * beam_towards);
+  return depth - log(max(left, 1e-7));
+}
+
+// Returns the factor on light of higher orders: CloudFactor of the renderer.
+float FactorAt(float depth_to_light) {
+  float at = 5.0 / log(41.0) * log(1.0 + clamp(depth_to_light, 0.0, 40.0));
+  int node = min(int(at), 4);
+  return mix(layer_factor[node], layer_factor[node + 1], at - float(node));
+}
+
+// The ray in the flat frame.
+struct CloudRay {
+  float altitude_m, rise, bend;  // z(t) = altitude + rise t + bend t^2
+  vec2 towards;                  // along the ground, per metre
+};
+
+vec3 OffsetOn(CloudRay ray, float t) {
+  float arc = 1e3 * PLANET_RADIUS /
+              (1e3 * (PLANET_RADIUS + EYE_ALTITUDE) + ray.rise * t);
+  return vec3(arc * t * ray.towards, ray.altitude_m + t * (ray.rise + ray.bend * t));
+}
+
+// The distances [m] within which a ray is in the range of a layer, and the hole between them in which
+// it is below the layer.
+struct CloudStretch {
+  float begin, end, hole, hole_end;
+};
+
+CloudStretch StretchIn(vec3 direction, float length_km) {
+  vec2 range = 1e-3 * cloud_range[layer_number].xy;
+  float h = EYE_ALTITUDE, radius = PLANET_RADIUS, mu = direction.z;
+  float lowest = mu < 0.0 ? PerigeeAltitude(h, mu, radius) : h;
+  float nadir = -(radius + h) * mu;  // distance of the lowest point
+  CloudStretch stretch = CloudStretch(0.0, 0.0, 1e9, 1e9);
+  if (h > range.y) {
+    if (lowest >= range.y || mu >= 0.0) return stretch;
+    stretch.begin = DistanceDownTo(h, mu, range.y, radius);
+    stretch.end = 2.0 * nadir - stretch.begin;
+  } else {
+    if (h < range.x) stretch.begin = DistanceUpTo(h, mu, range.x, radius);
+    stretch.end = DistanceUpTo(h, mu, range.y, radius);
+  }
+  if (h > range.x && lowest < range.x) {
+    stretch.hole = DistanceDownTo(h, mu, range.x, radius);
+    stretch.hole_end = 2.0 * nadir - stretch.hole;
+  }
+  stretch.end = min(stretch.end, min(length_km, 400.0));
+  return CloudStretch(1e3 * stretch.begin, 1e3 * stretch.end, 1e3 * stretch.hole,
+                      1e3 * stretch.hole_end);
+}
+
+// Returns light of the beam [1/sr], light of the sky, the scaled transmittance, and the mean distance
+// [km] times the share that is taken away.
+vec4 GatheredAlong(vec3 direction, float length_km) {
+  CloudStretch stretch = StretchIn(direction, length_km);
+  vec2 level = vec2(cloud_turn.x * direction.x - cloud_turn.y * direction.y,
+                    cloud_turn.y * direction.x + cloud_turn.x * direction.y);
+  float flat2 = dot(level, level);
+  CloudRay ray = CloudRay(1e3 * EYE_ALTITUDE, direction.z,
+                          0.5e-3 * flat2 / (PLANET_RADIUS + EYE_ALTITUDE), level);
+  // Tables of the direction.
+  vec2 around = vec2(atan(level.x, level.y) / 6.28318531,
+                     asin(clamp(direction.z, -1.0, 1.0)) / 3.14159265);
+  float most = 0.5 - 1.0 / float(textureSize(cloud_basis, 0).y);
+  vec2 basis_at = vec2(around.x, 0.25 + 0.5 * clamp(around.y, -most, most));
+  vec4 sun_basis = textureLod(cloud_basis, basis_at, 0.0);
+  vec4 sky_basis = textureLod(cloud_basis, basis_at + vec2(0.0, 0.5), 0.0);
+  vec3 apart = vec3(level, direction.z) - beam_towards;
+  float angle = sqrt(0.5 * length(apart));
+  float scale = LAYER_SCALE;
+
+  float t = stretch.begin, passed = 1.0, depth = 0.0, lit = 0.0, weighted = 0.0;
+  vec2 light = vec2(0.0);
+  for (int i = 0; i < CLOUD_STEPS && t < stretch.end && passed > kLeastPassed; ++i) {
+    if (t > stretch.hole) t = max(t, stretch.hole_end);
+    vec3 offset = OffsetOn(ray, t);
+    vec3 place = vec3(cloud_place[layer_number].xy, 0.0) + offset;
+    CloudSample at = CloudAt(place);
+    vec3 heading = vec3(level, ray.rise + 2.0 * ray.bend * t);
+    if (at.extinction <= 0.0) {
+      float near = max(-0.5 * at.depth, 6.0 + 0.002 * t);
+      t += at.brick < 0 ? max(ClearAhead(at, heading), 6.0 + 0.002 * t) : near;
+      continue;
+    }
+    float per_m = 1e-3 * at.extinction;
+    float length_m = min(0.5 / max(scale * per_m, 1e-6), 40.0 + 0.002 * t);
+    length_m = max(min(length_m, 4.0 + 0.4 * at.depth), 6.0 + 0.002 * t);
+    length_m = min(length_m, stretch.end - t + 0.01);
+    float more = per_m * length_m;
+    float to_light = DepthToLight(place, offset);
+    float peak_depth = clamp((1.0 - scale) * (to_light + depth + 0.5 * more), kLeastPeakDepth, kDeepestPeak);
+    vec2 peak_at = vec2(angle, log(peak_depth / kLeastPeakDepth) / log(kDeepestPeak / kLeastPeakDepth));
+    vec2 peak_size = vec2(textureSize(cloud_peak, 0));
+    float peak = textureLod(cloud_peak, (0.5 + peak_at * (peak_size - 1.0)) / peak_size, 0.0).r;
+    vec3 cell = vec3(place.xy * cloud_place[layer_number].zw,
+                     clamp((place.z - layer_shape.y - layer_cells.x) * layer_cells.y,
+                           0.5 / layer_shape.w, 1.0 - 0.5 / layer_shape.w));
+    float of_sun = max(dot(sun_basis, textureLod(cloud_sun_source, cell, 0.0)), 0.0);
+    float of_sky = max(dot(sky_basis, textureLod(cloud_sky_source, cell, 0.0)), 0.0);
+    float left = exp(-scale * more);
+    float share = passed * (1.0 - left);
+    light += share * vec2(layer_cells.z * exp(-scale * to_light) * peak + FactorAt(to_light) * of_sun,
+                          of_sky);
+    lit += share;
+    weighted += share * (t + 0.5 * length_m);
+    depth += more;
+    passed *= left;
+    t += length_m;
+  }
+  // The rest of a ray that was not followed to its end is like its beginning.
+  if (passed <= kLeastPassed) passed = 0.0;
+  float taken = 1.0 - passed;
+  if (lit > 0.0) light *= taken / lit;
+  light.y = min(light.y, taken);
+  return vec4(light, passed, lit > 0.0 ? 1e-3 * taken * weighted / lit : 0.0);
+}
