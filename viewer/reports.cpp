@@ -38,7 +38,7 @@ struct Shortcut {
   const char* name;
   void (*perfect)(PaintSizes& sizes);
 };
-constexpr std::array<Shortcut, 5> kShortcuts{
+constexpr std::array<Shortcut, 6> kShortcuts{
     {{"air tables", [](PaintSizes& sizes) { sizes.air = AirQuality::kHigh; }},
      {"levels of land", [](PaintSizes& sizes) { sizes.land_detail = 512.0; }},
      {"shafts",
@@ -50,7 +50,8 @@ constexpr std::array<Shortcut, 5> kShortcuts{
       [](PaintSizes& sizes) {
         sizes.lamps = {24, 1};
       }},
-     {"octaves of the ground", [](PaintSizes& sizes) { sizes.dropped_octaves = 0; }}}};
+     {"octaves of the ground", [](PaintSizes& sizes) { sizes.dropped_octaves = 0; }},
+     {"rays through clouds", [](PaintSizes& sizes) { sizes.clouds = kHighClouds; }}}};
 
 struct TimedPicture {
   HdrImage image;
@@ -127,7 +128,29 @@ HdrImage ReferenceOf(const ReferenceScene& scene, const PaintedView& view) {
   settings.samples_per_pixel = kSamples;
   settings.filter = PixelFilter::Kind::kBox;
   settings.layers = LayersOfEdges();
-  return RendererOf(scene)->Render(view.now, settings);
+  if (!scene.scene.clouds.empty()) settings.layers.push_back(PictureLayer::kClouds);
+  CameraSample camera(view.now);
+  camera.poses = {view.eye};
+  return RendererOf(scene)->Render(camera, settings);
+}
+
+/// Returns the differences in pixels with or without clouds, edges left out; nothing if there are none.
+std::optional<ErrorStatistics> DifferenceWhere(bool has_clouds, const HdrImage& reference,
+                                               const HdrImage& painted) {
+  constexpr float kLeftByClouds = 0.9F;
+  const auto layer = std::find_if(reference.layers.begin(), reference.layers.end(),
+                                  [](const ImageLayer& of) { return of.name == "clouds.T"; });
+  if (layer == reference.layers.end()) return std::nullopt;
+  const std::vector<bool> edges = EdgesOf(reference);
+  const double floor = ChangeFloor(reference);
+  std::vector<double> changes;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const bool is_cloudy = layer->values[i] < kLeftByClouds;
+    if (!edges[i] && is_cloudy == has_clouds)
+      changes.push_back(PixelChange(reference.rgb[i], painted.rgb[i], floor));
+  }
+  if (changes.empty()) return std::nullopt;
+  return ErrorStatistics(std::move(changes));
 }
 
 std::string Row(const std::string& name, const ErrorStatistics& is, const std::string& time) {
@@ -253,6 +276,10 @@ std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene, const 
       100.0 * (1.0 - static_cast<double>(all.count()) / static_cast<double>(edges.size())),
       "off by", "mean", "99 %", "99.9 %", "frame");
   text += Row("picture, from renderer's", all, fmt::format("{:.1f} ms", painted.frame_ms));
+  if (const auto cloudy = DifferenceWhere(true, by_renderer, painted.image))
+    text += Row("pixels with clouds", *cloudy, "");
+  if (const auto clear = DifferenceWhere(false, by_renderer, painted.image))
+    text += Row("pixels without clouds", *clear, "");
   for (const Shortcut& shortcut : kShortcuts) {
     PaintSizes better = sizes;
     shortcut.perfect(better);

@@ -87,8 +87,8 @@ void CloudPass::PaintLayer(const ShaderProgram& march, const CloudFollower& clou
   draw(clouds.shown(), layer);
 }
 
-void CloudPass::Paint(const CloudFollower& clouds, const CloudsBlock& block, bool two_lights,
-                      int width, int height, const CloudQuality& quality) {
+void CloudPass::Gather(const CloudFollower& clouds, const CloudsBlock& block, int width, int height,
+                       const CloudQuality& quality) {
   scale_ = quality.scale;
   const int columns = (width + scale_ - 1) / scale_, rows = (height + scale_ - 1) / scale_;
   if (!clouds_ || clouds_->width() != columns || clouds_->height() != rows) {
@@ -109,6 +109,10 @@ void CloudPass::Paint(const CloudFollower& clouds, const CloudsBlock& block, boo
     layers_[layer].Bind();
     PaintLayer(march, clouds, layer);
   }
+  CheckGl("CloudPass::Gather");
+}
+
+void CloudPass::Colour(const CloudFollower& clouds, bool two_lights, int width, int height) {
   const Kind kind{static_cast<int>(clouds.layers()), two_lights};
   auto found = colours_.find(kind);
   if (found == colours_.end()) {
@@ -127,7 +131,7 @@ void CloudPass::Paint(const CloudFollower& clouds, const CloudsBlock& block, boo
   }
   clouds_->Bind();
   DrawFullScreen(colours, no_vertices_);
-  CheckGl("CloudPass::Paint");
+  CheckGl("CloudPass::Colour");
 }
 
 void CloudPass::Bind(const ShaderProgram& program) const {

@@ -52,9 +52,11 @@ class CloudPass {
   CloudPass(std::vector<ShaderPiece> view, GLuint view_binding, MakeColours colours,
             const CloudUnits& units);
 
-  /// Draws the clouds of a view, whose surface map is bound.
-  void Paint(const CloudFollower& clouds, const CloudsBlock& block, bool two_lights, int width,
-             int height, const CloudQuality& quality);
+  /// Gathers the light of all layers in a view, whose surface map is bound.
+  void Gather(const CloudFollower& clouds, const CloudsBlock& block, int width, int height,
+              const CloudQuality& quality);
+  /// Gives the gathered light its colours.
+  void Colour(const CloudFollower& clouds, bool two_lights, int width, int height);
   /// Connects a program of the picture.
   void Connect(const ShaderProgram& program) const;
   /// Binds everything for the next draw call of a program that is connected and in use.

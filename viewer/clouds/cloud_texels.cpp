@@ -95,14 +95,20 @@ void FillShape(const CloudField& field, CloudLayerTexels& layer) {
   constexpr std::size_t kBrick = CloudField::StoredBricks::kCornersOfBrick;
   layer.depth.resize(kBrick * static_cast<std::size_t>(across) * static_cast<std::size_t>(rows) *
                      static_cast<std::size_t>(layer.tiles[2]));
+  const auto tile_of = [&](int slot) {
+    return std::array{slot % across, slot / across % rows, slot / (across * rows)};
+  };
+  const auto packed = [](const std::array<int, 3>& tile) {
+    return tile[0] | tile[1] << 10 | tile[2] << 20;
+  };
   tbb::parallel_for(0, slots, [&](int slot) {
-    CopyBrick(bytes.data() + distinct.first()[static_cast<std::size_t>(slot)],
-              {slot % across, slot / across % rows, slot / (across * rows)}, layer);
+    CopyBrick(bytes.data() + distinct.first()[static_cast<std::size_t>(slot)], tile_of(slot),
+              layer);
   });
   layer.brick.resize(bricks.slots().size());
   for (std::size_t i = 0; i < layer.brick.size(); ++i) {
     const std::int32_t slot = bricks.slots()[i];
-    layer.brick[i] = slot >= 0 ? distinct.Of(slot)
+    layer.brick[i] = slot >= 0 ? packed(tile_of(distinct.Of(slot)))
                                : -std::max(static_cast<std::int32_t>(bricks.distances()[i]), 1);
   }
 }

@@ -47,7 +47,8 @@ struct CloudLayerTexels {
   // Shape.
   double voxel_m{};                    // a cube's side
   std::array<int, 3> bricks{};         // along x, y and z
-  std::vector<std::int32_t> brick{};   // slot, or minus the distance to the nearest slot [bricks]
+  std::vector<std::int32_t> brick{};   // tile of the atlas (10 bits an axis), or minus the
+                                       // distance to the nearest brick with values [bricks]
   std::array<int, 3> tiles{};          // of the atlas, along its axes
   std::vector<std::uint8_t> depth{};   // atlas of slots: (9 tiles)^3 values, x fastest
   std::vector<HalfBits> extinction{};  // [1/km], kBytes a row; rows by altitude over `range`

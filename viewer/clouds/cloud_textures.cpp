@@ -134,7 +134,11 @@ void CloudTextures::BindLayer(const ShaderProgram& march, std::size_t number, st
               f(kSide * of.voxel_m), f(of.cells[2]));
   glUniform4f(march.Uniform("layer_cells"), f(of.cells_base_m), f(1.0 / cells_m),
               f(of.scaled_albedo), 0.0F);
-  glUniform4i(march.Uniform("layer_tiles"), of.tiles[0], of.tiles[1], of.tiles[2], 0);
+  constexpr int kCorners = 9;
+  glUniform3f(march.Uniform("layer_texel"), f(1.0 / (kCorners * of.tiles[0])),
+              f(1.0 / (kCorners * of.tiles[1])), f(1.0 / (kCorners * of.tiles[2])));
+  glUniform2f(march.Uniform("layer_periods_per_voxel"), f(of.voxel_m / of.size_m.x),
+              f(of.voxel_m / of.size_m.y));
   glUniform3f(march.Uniform("layer_voxels"), f(of.size_m.x / of.voxel_m),
               f(of.size_m.y / of.voxel_m), f(kSide * of.bricks[2]));
   glUniform3f(march.Uniform("beam_towards"), f(to_light.x), f(to_light.y), f(to_light.z));

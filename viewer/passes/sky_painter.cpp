@@ -159,9 +159,12 @@ void SkyPainter::PaintShafts(const Frame& frame) {
 void SkyPainter::PaintClouds(const Frame& frame) {
   if (!scene_.clouds().IsShown()) return;
   Begin("clouds");
-  cloud_pass_.Paint(scene_.clouds(), scene_.clouds().BlockFor(frame.view.eye.place, frame.view.now),
-                    frame.lights().size() > 1, frame.view.width, frame.view.height,
-                    scene_.sizes().clouds);
+  const auto& [width, height] = std::pair{frame.view.width, frame.view.height};
+  cloud_pass_.Gather(scene_.clouds(),
+                     scene_.clouds().BlockFor(frame.view.eye.place, frame.view.now), width, height,
+                     scene_.sizes().clouds);
+  Begin("cloud colours");
+  cloud_pass_.Colour(scene_.clouds(), frame.lights().size() > 1, width, height);
 }
 
 void SkyPainter::PaintLamps(const Frame& frame) {

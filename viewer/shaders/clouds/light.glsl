@@ -40,16 +40,28 @@ vec3 InCloudFrame(vec3 point, float altitude_km) {
               cloud_turn.y * level.x + cloud_turn.x * level.y, 1e3 * altitude_km);
 }
 
+// A layer and its nodes of light, see the block.
+struct LayerNodes {
+  vec4 place, levels, shear, range;
+};
+
+LayerNodes NodesOfLayer(int number) {
+  return LayerNodes(cloud_place[number], cloud_levels[number], cloud_shear[number],
+                    cloud_range[number]);
+}
+
 // Returns the transmittance of one layer from a place to the light.
+float LeftByNodes(sampler3D map, LayerNodes of, vec3 place) {
+  float height = place.z - of.levels.x;
+  vec2 foot = (of.place.xy + place.xy - height * of.shear.xy) * of.place.zw;
+  float level = of.levels.z + clamp(height * of.levels.y, 0.0, of.levels.w - 1.0);
+  float left = textureLod(map, vec3(foot, (level + 0.5) / float(textureSize(map, 0).z)), 0.0).r;
+  bool is_beside = of.range.z > 0.5 && any(greaterThan(abs(foot - 0.5), vec2(0.5)));
+  return place.z >= of.shear.w || is_beside ? 1.0 : left;
+}
+
 float LeftByLayer(sampler3D map, int number, vec3 place) {
-  vec4 at = cloud_place[number], levels = cloud_levels[number], shear = cloud_shear[number];
-  float height = place.z - levels.x;
-  vec2 foot = (at.xy + place.xy - height * shear.xy) * at.zw;
-  float level = clamp(height * levels.y, 0.0, levels.w - 1.0);
-  float left =
-      textureLod(map, vec3(foot, (levels.z + level + 0.5) / float(textureSize(map, 0).z)), 0.0).r;
-  bool is_beside = cloud_range[number].z > 0.5 && any(greaterThan(abs(foot - 0.5), vec2(0.5)));
-  return place.z >= shear.w || is_beside ? 1.0 : left;
+  return LeftByNodes(map, NodesOfLayer(number), place);
 }
 
 // Returns the transmittance of all layers.

@@ -3,7 +3,8 @@
 // textures of cloud_texels.h. Defined before this text: CLOUD_STEPS, the most steps of a ray, and
 // CLOUD_SUN_STEPS, the number of samples of the shape towards the sun.
 
-uniform isampler3D cloud_bricks;     // slot, or minus the distance to the nearest one [bricks]
+uniform isampler3D cloud_bricks;     // tile of the atlas: 10 bits along each axis; or minus the distance
+                                     // to the nearest brick with values [bricks]
 uniform sampler3D cloud_depth;       // atlas of 9 x 9 x 9 corners per slot
 uniform sampler2D cloud_extinction;  // [1/km], by depth and altitude
 uniform sampler3D cloud_sun_source, cloud_sky_source;  // four components per cell
@@ -16,8 +17,9 @@ uniform vec4 layer_shape;   // voxels per metre; altitude of the lowest brick [m
                             // cells along z
 uniform vec4 layer_cells;   // of light: base over the lowest brick [m], inverse height of all [1/m];
                             // scaled albedo w'; base of the table of extinction, unused
-uniform ivec4 layer_tiles;  // of the atlas
+uniform vec3 layer_texel;  // of the atlas: inverse sides
 uniform vec3 layer_voxels;  // of a period
+uniform vec2 layer_periods_per_voxel;
 uniform vec3 beam_towards;  // unit vector to the light of the solution, in the frame of the clouds
 uniform float layer_factor[6];
 
@@ -25,7 +27,9 @@ const float kBrickVoxels = 8.0, kBrickCorners = 9.0, kSurfaceCode = 96.0;
 const float kLeastPassed = 0.02;
 const float kLeastPeakDepth = 1e-3, kDeepestPeak = 200.0;
 
-#define LAYER_SCALE cloud_shear[layer_number].z
+// The layer, as read from the block once.
+LayerNodes layer;
+float layer_rows, layer_row_m;  // of the table of extinction, and their number per metre
 
 // A sample of the shape.
 struct CloudSample {
@@ -38,23 +42,19 @@ struct CloudSample {
 // @param place  metres in the lattice.
 CloudSample CloudAt(vec3 place) {
   vec3 voxel = (place - vec3(0.0, 0.0, layer_shape.y)) * layer_shape.x;
-  voxel.xy -= layer_voxels.xy * floor(voxel.xy / layer_voxels.xy);
-  voxel.z = clamp(voxel.z, 0.0, layer_voxels.z - 1e-3);
-  ivec3 number = ivec3(voxel / kBrickVoxels);
+  voxel.xy -= layer_voxels.xy * floor(voxel.xy * layer_periods_per_voxel);
+  voxel = clamp(voxel, vec3(0.0), layer_voxels - 1e-3);
+  ivec3 number = ivec3(voxel * (1.0 / kBrickVoxels));
   vec3 share = voxel - kBrickVoxels * vec3(number);
   CloudSample at;
   at.brick = texelFetch(cloud_bricks, number, 0).r;
-  at.in_brick = share / kBrickVoxels;
-  int slot = max(at.brick, 0);
-  ivec3 tile = ivec3(slot % layer_tiles.x, slot / layer_tiles.x % layer_tiles.y,
-                     slot / (layer_tiles.x * layer_tiles.y));
-  vec3 corner = (kBrickCorners * vec3(tile) + share + 0.5) / (kBrickCorners * vec3(layer_tiles.xyz));
+  at.in_brick = share * (1.0 / kBrickVoxels);
+  ivec3 tile = ivec3(max(at.brick, 0)) >> ivec3(0, 10, 20) & 1023;
+  vec3 corner = (kBrickCorners * vec3(tile) + share + 0.5) * layer_texel;
   float code = 255.0 * textureLod(cloud_depth, corner, 0.0).r;
   at.depth = code - kSurfaceCode;
-  vec2 range = cloud_range[layer_number].xy;
-  vec2 size = vec2(textureSize(cloud_extinction, 0));
-  float row = (0.5 + (size.y - 1.0) * clamp((place.z - range.x) / (range.y - range.x), 0.0, 1.0)) / size.y;
-  at.extinction = textureLod(cloud_extinction, vec2((code + 0.5) / size.x, row), 0.0).r;
+  vec2 in_table = vec2((code + 0.5) * (1.0 / 256.0), layer_rows + layer_row_m * (place.z - layer.range.x));
+  at.extinction = textureLod(cloud_extinction, in_table, 0.0).r;
   if (at.brick < 0 || at.depth <= 0.0) at.extinction = 0.0;
   return at;
 }
@@ -78,7 +78,7 @@ float DepthToLight(vec3 place, vec3 offset) {
     ahead += step_m;
   }
 #endif
-  float left = LeftByLayer(cloud_light, layer_number, offset + ahead * beam_towards);
+  float left = LeftByNodes(cloud_light, layer, offset + ahead * beam_towards);
   return depth - log(max(left, 1e-7));
 }
 
@@ -108,7 +108,7 @@ struct CloudStretch {
 };
 
 CloudStretch StretchIn(vec3 direction, float length_km) {
-  vec2 range = 1e-3 * cloud_range[layer_number].xy;
+  vec2 range = 1e-3 * layer.range.xy;
   float h = EYE_ALTITUDE, radius = PLANET_RADIUS, mu = direction.z;
   float lowest = mu < 0.0 ? PerigeeAltitude(h, mu, radius) : h;
   float nadir = -(radius + h) * mu;  // distance of the lowest point
@@ -133,6 +133,10 @@ CloudStretch StretchIn(vec3 direction, float length_km) {
 // Returns light of the beam [1/sr], light of the sky, the scaled transmittance, and the mean distance
 // [km] times the share that is taken away.
 vec4 GatheredAlong(vec3 direction, float length_km) {
+  layer = NodesOfLayer(layer_number);
+  float rows = float(textureSize(cloud_extinction, 0).y);
+  layer_rows = 0.5 / rows;
+  layer_row_m = (rows - 1.0) / rows / (layer.range.y - layer.range.x);
   CloudStretch stretch = StretchIn(direction, length_km);
   vec2 level = vec2(cloud_turn.x * direction.x - cloud_turn.y * direction.y,
                     cloud_turn.y * direction.x + cloud_turn.x * direction.y);
@@ -148,14 +152,18 @@ vec4 GatheredAlong(vec3 direction, float length_km) {
   vec4 sky_basis = textureLod(cloud_basis, basis_at + vec2(0.0, 0.5), 0.0);
   vec3 apart = vec3(level, direction.z) - beam_towards;
   float angle = sqrt(0.5 * length(apart));
-  float scale = LAYER_SCALE;
+  float scale = layer.shear.z;
+  vec2 peak_size = vec2(textureSize(cloud_peak, 0));
+  float peak_angle = (0.5 + angle * (peak_size.x - 1.0)) / peak_size.x;
+  float peak_row = (peak_size.y - 1.0) / peak_size.y / log2(kDeepestPeak / kLeastPeakDepth);
+  float lowest_cell = 0.5 / layer_shape.w;
 
   float t = stretch.begin, passed = 1.0, depth = 0.0, lit = 0.0, weighted = 0.0;
   vec2 light = vec2(0.0);
   for (int i = 0; i < CLOUD_STEPS && t < stretch.end && passed > kLeastPassed; ++i) {
     if (t > stretch.hole) t = max(t, stretch.hole_end);
     vec3 offset = OffsetOn(ray, t);
-    vec3 place = vec3(cloud_place[layer_number].xy, 0.0) + offset;
+    vec3 place = vec3(layer.place.xy, 0.0) + offset;
     CloudSample at = CloudAt(place);
     vec3 heading = vec3(level, ray.rise + 2.0 * ray.bend * t);
     if (at.extinction <= 0.0) {
@@ -170,12 +178,10 @@ vec4 GatheredAlong(vec3 direction, float length_km) {
     float more = per_m * length_m;
     float to_light = DepthToLight(place, offset);
     float peak_depth = clamp((1.0 - scale) * (to_light + depth + 0.5 * more), kLeastPeakDepth, kDeepestPeak);
-    vec2 peak_at = vec2(angle, log(peak_depth / kLeastPeakDepth) / log(kDeepestPeak / kLeastPeakDepth));
-    vec2 peak_size = vec2(textureSize(cloud_peak, 0));
-    float peak = textureLod(cloud_peak, (0.5 + peak_at * (peak_size - 1.0)) / peak_size, 0.0).r;
-    vec3 cell = vec3(place.xy * cloud_place[layer_number].zw,
-                     clamp((place.z - layer_shape.y - layer_cells.x) * layer_cells.y,
-                           0.5 / layer_shape.w, 1.0 - 0.5 / layer_shape.w));
+    float peak_at = 0.5 / peak_size.y + peak_row * log2(peak_depth / kLeastPeakDepth);
+    float peak = textureLod(cloud_peak, vec2(peak_angle, peak_at), 0.0).r;
+    float cell_z = (place.z - layer_shape.y - layer_cells.x) * layer_cells.y;
+    vec3 cell = vec3(place.xy * layer.place.zw, clamp(cell_z, lowest_cell, 1.0 - lowest_cell));
     float of_sun = max(dot(sun_basis, textureLod(cloud_sun_source, cell, 0.0)), 0.0);
     float of_sky = max(dot(sky_basis, textureLod(cloud_sky_source, cell, 0.0)), 0.0);
     float left = exp(-scale * more);
