@@ -12,6 +12,6 @@ struct CloudQuality {
   bool operator==(const CloudQuality&) const = default;
 };
 
-inline constexpr CloudQuality kLowClouds{3, 64, 0}, kMediumClouds{2, 96, 1}, kHighClouds{1, 192, 2};
+inline constexpr CloudQuality kLowClouds{3, 96, 0}, kMediumClouds{2, 128, 1}, kHighClouds{1, 256, 2};
 
 }  // namespace alpenglow::viewer

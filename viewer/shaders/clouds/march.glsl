@@ -160,18 +160,23 @@ vec4 GatheredAlong(vec3 direction, float length_km) {
 
   float t = stretch.begin, passed = 1.0, depth = 0.0, lit = 0.0, weighted = 0.0;
   vec2 light = vec2(0.0);
-  for (int i = 0; i < CLOUD_STEPS && t < stretch.end && passed > kLeastPassed; ++i) {
-    if (t > stretch.hole) t = max(t, stretch.hole_end);
-    vec3 offset = OffsetOn(ray, t);
-    vec3 place = vec3(layer.place.xy, 0.0) + offset;
-    CloudSample at = CloudAt(place);
-    vec3 heading = vec3(level, ray.rise + 2.0 * ray.bend * t);
-    if (at.extinction <= 0.0) {
-      float near = max(-0.5 * at.depth, 6.0 + 0.002 * t);
-      t += at.brick < 0 ? max(ClearAhead(at, heading), 6.0 + 0.002 * t) : near;
-      continue;
+  int steps = 0;
+  while (steps < CLOUD_STEPS && t < stretch.end && passed > kLeastPassed) {
+    // Software drivers evaluate both sides of a branch. This loop has only what finds the cloud.
+    vec3 offset, place;
+    CloudSample at;
+    for (; steps < CLOUD_STEPS && t < stretch.end; ++steps) {
+      if (t > stretch.hole) t = max(t, stretch.hole_end);
+      offset = OffsetOn(ray, t);
+      place = vec3(layer.place.xy, 0.0) + offset;
+      at = CloudAt(place);
+      if (at.extinction > 0.0) break;
+      vec3 heading = vec3(level, ray.rise + 2.0 * ray.bend * t);
+      float clear = at.brick < 0 ? ClearAhead(at, heading) : -0.5 * at.depth;
+      t += max(clear, 6.0 + 0.002 * t);
     }
-    float per_m = 1e-3 * at.extinction;
+    ++steps;
+    float per_m = t < stretch.end ? 1e-3 * at.extinction : 0.0;
     float length_m = min(0.5 / max(scale * per_m, 1e-6), 40.0 + 0.002 * t);
     length_m = max(min(length_m, 4.0 + 0.4 * at.depth), 6.0 + 0.002 * t);
     length_m = min(length_m, stretch.end - t + 0.01);
