@@ -11,6 +11,7 @@
 #include "atmosphere/base/error.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
+#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "viewer/shaders/pass_setup.h"
@@ -69,6 +70,14 @@ void SceneEdits::BeginHashing() {
       });
 }
 
+void SceneEdits::Use(const std::vector<SceneCloud>& clouds) {
+  RequireCloudsFit(clouds, MemoryOfMachine());
+  scene_.clouds = clouds;
+  changes_.clouds = std::make_shared<const std::vector<SceneCloud>>(clouds);
+  ++version_;
+  painter_.Replace(clouds);
+}
+
 void SceneEdits::Use(const AirChoice& choice, const Place& place) {
   const Medium changed = Changed(changes_.planet, choice);
   changes_.air = choice;
@@ -94,6 +103,10 @@ void SceneEdits::Restore(const SceneChanges& changes) {
   if (has_range_ && changes.terrain.centre != scene_.terrain.centre) UseRange(changes.terrain);
   changes_.planet = changes.planet;
   changes_.air = changes.air;
+  if (changes.clouds && changes.clouds != changes_.clouds) {
+    Use(*changes.clouds);
+    changes_.clouds = changes.clouds;
+  }
   if (!changes.sky_air || changes.sky_air == changes_.sky_air) return;
   scene_.medium = Changed(changes_.planet, changes_.air);
   changes_.sky_air = changes.sky_air;
@@ -155,7 +168,8 @@ std::string SceneEdits::ZoneAt(const Place& place) const {
 
 Scene SceneEdits::SeenBy(const CameraPose& eye, const UtcTime& now) const {
   Scene seen = scene_;
-  seen.place = eye.place;
+  // The frame of clouds is that of the place of the scene.
+  if (seen.clouds.empty()) seen.place = eye.place;
   seen.place.height_m = 0.0;
   seen.time = now;
   seen.camera.height = {eye.place.height_m, false};

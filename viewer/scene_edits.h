@@ -26,6 +26,7 @@ struct SceneChanges {
   Medium planet;                  // without the changes of `air`
   AirChoice air;                  // changes of the planet's atmosphere
   std::optional<Medium> sky_air;  // the changed medium under the eye; nullopt: that of the scene
+  std::shared_ptr<const std::vector<SceneCloud>> clouds = nullptr;  // null: those of the scene
 };
 
 class SceneEdits {
@@ -33,6 +34,8 @@ class SceneEdits {
   /// Keeps a reference to the painter, which draws the scene with this land.
   SceneEdits(const Scene& scene, const LandSource& land, SkyPainter& painter);
 
+  /// Changes the clouds. Throws InputError if their fields may need more memory than there is.
+  void Use(const std::vector<SceneCloud>& clouds);
   /// Changes the air.
   /// @param place  of the eye: the medium lies on the sphere under it.
   void Use(const AirChoice& choice, const Place& place);

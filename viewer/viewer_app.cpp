@@ -165,6 +165,10 @@ void ViewerApp::Use(const QualityRule& rule) {
   Report("quality " + flight_.frames().QualityText());
 }
 
+void ViewerApp::Use(const std::vector<SceneCloud>& clouds) {
+  Try([&] { flight_.edits().Use(clouds); });
+}
+
 void ViewerApp::UsePlanet(const std::string& preset) {
   Try([&] { flight_.edits().UsePlanet(preset, flight_.eye().place); });
 }
@@ -374,9 +378,9 @@ HudAir AirOf(FlightSession& flight) {
   HudAir shown;
   shown.planet = planet.name;
   shown.visibility_km = std::min(1e-3 * VisibilityOf(air), 1e4);
-  const double height_m = flight.eye().place.height_m;
-  shown.visibility_here_km = std::min(
-      1e-3 * VisibilityAt(air, height_m, flight.frames().MediaExtinctionAt(height_m)), 1e4);
+  const Place& place = flight.eye().place;
+  const double per_m = flight.frames().ExtinctionAt(place, flight.now());
+  shown.visibility_here_km = std::min(1e-3 * VisibilityAt(air, place.height_m, per_m), 1e4);
   shown.aerosol_scale = flight.edits().air_choice().aerosol;
   shown.ozone_du = OzoneDobson(air);
   double albedo = 0.0;

@@ -82,6 +82,10 @@ class ViewerApp final : public FlightCommands {
     return flight_.edits().air_choice();
   }
   void Use(const AirChoice& choice) override;
+  [[nodiscard]] const std::vector<SceneCloud>& clouds() const override {
+    return flight_.edits().scene().clouds;
+  }
+  void Use(const std::vector<SceneCloud>& clouds) override;
   void ToggleLandingLight() override;
   void MoveTo(const EyePlacement& placement) override;
   void GoTo(const std::string& place) override;

@@ -78,11 +78,15 @@ class CloudFollower::Maker {
 
 CloudFollower::CloudFollower(const Scene& scene, const SceneGround& ground)
     : scene_(std::make_shared<const Scene>(scene)), frame_(ground.frame) {
-  if (!HasAny()) return;
-  maker_.emplace(
-      [maker = std::make_shared<Maker>(ground.frame, GroundHeightUnder(ground, scene.place))](
-          const CloudMoment& moment) { return (*maker)(moment); },
-      Suits);
+  ground_m_ = GroundHeightUnder(ground, scene.place);
+  Begin();
+}
+
+void CloudFollower::Begin() {
+  if (!HasAny() || maker_) return;
+  maker_.emplace([maker = std::make_shared<Maker>(frame_, ground_m_)](
+                     const CloudMoment& moment) { return (*maker)(moment); },
+                 Suits);
 }
 
 std::size_t CloudFollower::layers() const {
@@ -94,6 +98,7 @@ void CloudFollower::Use(const std::vector<SceneCloud>& clouds) {
   Scene other = *scene_;
   other.clouds = clouds;
   scene_ = std::make_shared<const Scene>(std::move(other));
+  Begin();
 }
 
 bool CloudFollower::Suits(const CloudMoment& made, const CloudMoment& wanted) {
@@ -132,6 +137,10 @@ void CloudFollower::Show() {
 void CloudFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const Place& eye,
                            const UtcTime& now, const DistantLight& light, double seconds) {
   if (!maker_) return;
+  if (!HasAny()) {
+    coming_ = shown_ = earlier_ = nullptr;
+    return;
+  }
   share_ = std::min(share_ + seconds / kFade_s, 1.0);
   if (share_ >= 1.0) earlier_ = nullptr;
   if (!coming_) {
@@ -146,7 +155,7 @@ void CloudFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const Pl
 
 void CloudFollower::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const Place& eye,
                                    const UtcTime& now, const DistantLight& light) {
-  if (!maker_) return;
+  if (!maker_ || !HasAny()) return;
   maker_->WaitUntilReady(MomentOf(air, eye, now, light));
   if (std::optional<MadeClouds> made = maker_->Poll()) TakeOver(std::move(*made));
   while (coming_ && !coming_->textures->UploadOne(kUploadUnit)) continue;

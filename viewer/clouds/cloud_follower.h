@@ -63,7 +63,7 @@ class CloudFollower {
   /// Returns whether the scene has clouds.
   [[nodiscard]] bool HasAny() const { return !scene_->clouds.empty(); }
   /// Returns whether clouds are drawn now.
-  [[nodiscard]] bool IsShown() const { return shown_ != nullptr; }
+  [[nodiscard]] bool IsShown() const { return shown_ != nullptr && layers() > 0; }
   /// Returns the number of layers that are drawn.
   [[nodiscard]] std::size_t layers() const;
 
@@ -105,12 +105,14 @@ class CloudFollower {
   [[nodiscard]] CloudMoment MomentOf(const std::shared_ptr<const SolvedAir>& air, const Place& eye,
                                      const UtcTime& now, const DistantLight& light) const;
   [[nodiscard]] static bool Suits(const CloudMoment& made, const CloudMoment& wanted);
+  /// Starts the thread, if there are clouds to make.
+  void Begin();
   void TakeOver(MadeClouds made);
   void Show();
 
   std::shared_ptr<const Scene> scene_;
   LocalFrame frame_;
-  double radius_m_ = 0.0;
+  double ground_m_ = 0.0;  // height of the ground at the scene's place
   std::shared_ptr<Shown> coming_, shown_, earlier_;
   double share_ = 1.0;
   std::optional<AsyncValue<CloudMoment, MadeClouds>> maker_;

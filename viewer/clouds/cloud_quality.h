@@ -12,6 +12,7 @@ struct CloudQuality {
   bool operator==(const CloudQuality&) const = default;
 };
 
-inline constexpr CloudQuality kLowClouds{3, 96, 0}, kMediumClouds{2, 128, 1}, kHighClouds{1, 256, 2};
+inline constexpr CloudQuality kLowClouds{3, 96, 0}, kMediumClouds{2, 128, 1},
+    kHighClouds{1, 256, 2};
 
 }  // namespace alpenglow::viewer

@@ -15,6 +15,8 @@
 #include "lut/image/picture_format.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/image/white_balance.h"
+#include "renderer/clouds/cloud_options.h"
+#include "renderer/scene/scene_clouds.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/panel_controls.h"
 
@@ -257,6 +259,53 @@ void DrawAir(const PanelChange& change) {
   if (ozone_du) choice.ozone_du = ozone_du;
   if (albedo) choice.ground_albedo = albedo;
   if (visibility_km || aerosol || ozone_du || albedo) flight.Use(choice);
+}
+
+namespace {
+
+// Draws the controls of one layer, and returns the changed layer; nothing if nothing changes.
+std::optional<CloudOptions> LayerControls(const CloudOptions& layer) {
+  CloudOptions changed = layer;
+  const auto [least, most] = CoversOf(layer.genus);
+  const auto set = [](double& value, const std::optional<double>& to) {
+    value = to.value_or(value);
+  };
+  set(changed.cover, Slider("cover", layer.cover, {least, most, "%.2f"}));
+  set(changed.base_altitude_m, Slider("base", layer.base_altitude_m, {0.0, 11000.0, "%.0f m"}));
+  set(changed.depth_m, Slider("depth", layer.depth_m, {100.0, 4000.0, "%.0f m"}));
+  set(changed.wind_m_per_s.x,
+      Slider("wind to the east", layer.wind_m_per_s.x, {-50.0, 50.0, "%.0f m/s"}));
+  set(changed.wind_m_per_s.y,
+      Slider("wind to the north", layer.wind_m_per_s.y, {-50.0, 50.0, "%.0f m/s"}));
+  if (const auto seed = Slider("seed", layer.seed, {1.0, 100.0, "%.0f"}))
+    changed.seed = static_cast<std::uint32_t>(std::lround(*seed));
+  return changed == layer ? std::nullopt : std::optional(changed);
+}
+
+}  // namespace
+
+void DrawWeather(const PanelChange& change) {
+  std::vector<SceneCloud> clouds = change.flight.clouds();
+  bool is_changed = false;
+  ImGui::PushItemWidth(Pixels(change.view, kItemWidth));
+  static const std::vector<std::string> kSkies{"none", "fair", "broken", "high", "overcast"};
+  if (const auto sky = NameList("usual sky", "", kSkies)) {
+    clouds = CloudsFromText(*sky);
+    is_changed = true;
+  }
+  for (std::size_t i = 0; i < clouds.size() && !is_changed; ++i) {
+    if (!clouds[i].grid.empty()) continue;
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::Separator();
+    ImGui::TextUnformatted(std::string(kCloudGenusNames.Of(clouds[i].options.genus)).c_str());
+    if (const auto changed = LayerControls(clouds[i].options)) {
+      clouds[i].options = *changed;
+      is_changed = true;
+    }
+    ImGui::PopID();
+  }
+  ImGui::PopItemWidth();
+  if (is_changed) change.flight.Use(clouds);
 }
 
 void DrawLights(const PanelChange& change) {

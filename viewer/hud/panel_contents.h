@@ -42,6 +42,7 @@ struct PanelTyping {
 
 void DrawPlaceAndTime(const PanelChange& change, PanelTyping& typing);
 void DrawAir(const PanelChange& change);
+void DrawWeather(const PanelChange& change);
 void DrawLights(const PanelChange& change);
 void DrawExposure(const PanelChange& change);
 void DrawFlight(const PanelChange& change);

@@ -22,6 +22,7 @@ struct Placement {
 constexpr std::array<Placement, kHudPanels> kPlacements{
     {{HudPanel::kPlaceAndTime, "Place and time", 0.0F, 0.0F},
      {HudPanel::kAir, "Air", 1.0F, 0.0F},
+     {HudPanel::kWeather, "Weather", 1.0F, 0.25F},
      {HudPanel::kLights, "Lights", 1.0F, 0.50F},
      {HudPanel::kExposure, "Exposure", 1.0F, 1.0F},
      {HudPanel::kFlight, "Flight", 0.50F, 1.0F},
@@ -103,6 +104,8 @@ void Panels::DrawContents(HudPanel panel, const PanelChange& change) {
       return DrawPlaceAndTime(change, typing_);
     case HudPanel::kAir:
       return DrawAir(change);
+    case HudPanel::kWeather:
+      return DrawWeather(change);
     case HudPanel::kLights:
       return DrawLights(change);
     case HudPanel::kExposure:

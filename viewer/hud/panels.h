@@ -13,6 +13,7 @@ namespace alpenglow::viewer {
 enum class HudPanel {
   kPlaceAndTime,
   kAir,
+  kWeather,
   kLights,
   kExposure,
   kFlight,
@@ -21,7 +22,7 @@ enum class HudPanel {
   kHelp,
   kLeave
 };
-inline constexpr std::size_t kHudPanels = 9;
+inline constexpr std::size_t kHudPanels = 10;
 
 /// Open panels, and the text being typed into them. Uses the current Dear ImGui context, between
 /// its NewFrame and Render.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "renderer/scene/scene_clouds.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -150,6 +151,24 @@ void StepHaze(FlightCommands& flight) {
   UseAerosol(flight, std::clamp(flight.air_choice().aerosol * factor, 1e-3, 1000.0));
 }
 
+/// Changes the cover of all layers that have a choice; a clear sky gets fair-weather clouds.
+template <int kStep>
+void StepCover(FlightCommands& flight) {
+  constexpr double kCoverStep = 0.1;
+  std::vector<SceneCloud> clouds = flight.clouds();
+  if (clouds.empty() && kStep > 0) clouds = CloudsFromText("fair");
+  std::string covers;
+  for (SceneCloud& layer : clouds) {
+    if (!layer.grid.empty()) continue;
+    const auto [least, most] = CoversOf(layer.options.genus);
+    layer.options.cover = std::clamp(layer.options.cover + kStep * kCoverStep, least, most);
+    covers +=
+        fmt::format(" {} {:.2f}", kCloudGenusNames.Of(layer.options.genus), layer.options.cover);
+  }
+  flight.Use(clouds);
+  flight.Report(covers.empty() ? "no clouds" : "clouds:" + covers);
+}
+
 void UseNextQuality(FlightCommands& flight) {
   const std::optional<Quality> fixed = flight.quality().fixed;
   const int next = fixed ? static_cast<int>(*fixed) + 1 : 0;
@@ -254,6 +273,8 @@ constexpr Action kActions[] = {
     Again(kViewKeys, "shorter visibility", "Shift+Z", StepHaze<1>),
     Once(kViewKeys, "visibility of the scene", "Ctrl+Z",
          [](FlightCommands& flight) { UseAerosol(flight, 1.0); }),
+    Again(kViewKeys, "more clouds", "C", StepCover<1>),
+    Again(kViewKeys, "fewer clouds", "Shift+C", StepCover<-1>),
     Once(kViewKeys, "landing light, on and off", "Ctrl+L",
          [](FlightCommands& flight) { flight.ToggleLandingLight(); }),
     Once(kViewKeys, "next quality", "O", UseNextQuality),

@@ -55,6 +55,8 @@ class FlightCommands {
   virtual void UsePlanet(const std::string& preset) = 0;
   [[nodiscard]] virtual const AirChoice& air_choice() const = 0;
   virtual void Use(const AirChoice& choice) = 0;
+  [[nodiscard]] virtual const std::vector<SceneCloud>& clouds() const = 0;
+  virtual void Use(const std::vector<SceneCloud>& clouds) = 0;
   virtual void ToggleLandingLight() = 0;
 
   virtual void MoveTo(const EyePlacement& placement) = 0;

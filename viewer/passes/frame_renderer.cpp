@@ -222,8 +222,9 @@ TableFigures FrameRenderer::Figures() const {
           scene.land().Figures()};
 }
 
-double FrameRenderer::MediaExtinctionAt(double height_m) const {
-  return painter_.scene().media().ExtinctionAt(height_m);
+double FrameRenderer::ExtinctionAt(const Place& place, const UtcTime& now) const {
+  const PaintedScene& scene = painter_.scene();
+  return scene.media().ExtinctionAt(place.height_m) + scene.clouds().ExtinctionAt(place, now);
 }
 
 }  // namespace alpenglow::viewer

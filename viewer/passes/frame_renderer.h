@@ -125,8 +125,8 @@ class FrameRenderer {
   /// Returns the progress of the land and of the light on it; nothing while the land is complete.
   [[nodiscard]] std::optional<LandProgress> Progress() const;
   [[nodiscard]] TableFigures Figures() const;
-  /// Returns the extinction by media [1/m] at a height.
-  [[nodiscard]] double MediaExtinctionAt(double height_m) const;
+  /// Returns the extinction by media and clouds [1/m] at a place.
+  [[nodiscard]] double ExtinctionAt(const Place& place, const UtcTime& now) const;
   /// Returns the medium that is displayed.
   [[nodiscard]] std::shared_ptr<const SolvedAir> air() const {
     return painter_.scene().air().air();

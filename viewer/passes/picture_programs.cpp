@@ -56,8 +56,8 @@ CloudPass ConnectedClouds() {
     std::vector<ShaderPiece> texts;
     if (kind.two_lights) texts.push_back({"lights", "#define TWO_LIGHTS\n"});
     Append(texts, AirTexts());
-    Append(texts, WithViewerPieces({}, {"viewer/shaders/air/block.glsl",
-                                        "viewer/shaders/air/sun_light.glsl"}));
+    Append(texts, WithViewerPieces(
+                      {}, {"viewer/shaders/air/block.glsl", "viewer/shaders/air/sun_light.glsl"}));
     Append(texts, CloudTexts(kind.layers));
     ShaderProgram made = FullScreenProgram(
         WithViewerPieces(std::move(texts), {"viewer/shaders/clouds/colour.frag.glsl"}));

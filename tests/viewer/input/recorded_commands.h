@@ -42,6 +42,8 @@ class RecordedCommands : public FlightCommands {
   void UsePlanet(const std::string& preset) override { requests.planet = preset; }
   [[nodiscard]] const AirChoice& air_choice() const override { return air_; }
   void Use(const AirChoice& choice) override { requests.air = air_ = choice; }
+  [[nodiscard]] const std::vector<SceneCloud>& clouds() const override { return clouds_; }
+  void Use(const std::vector<SceneCloud>& clouds) override { clouds_ = clouds; }
   void ToggleLandingLight() override { requests.landing_light = true; }
   void MoveTo(const EyePlacement& placement) override { requests.place = placement; }
   void GoTo(const std::string& place) override { requests.named_place = place; }
@@ -70,6 +72,7 @@ class RecordedCommands : public FlightCommands {
   ExposureControl exposure_{{}, {}};
   QualityRule quality_;
   AirChoice air_;
+  std::vector<SceneCloud> clouds_;
 };
 
 }  // namespace alpenglow::tests

@@ -19,6 +19,8 @@ uniform ivec2 picture_size;
 uniform int cloud_scale;
 uniform sampler2D layer_light_0, layer_light_1, layer_light_2, layer_light_3;  // of march.frag.glsl
 
+const float kToSpace_km = 1e3;
+
 // The air up to the places where a ray leaves an interface.
 struct InterfaceAir {
   float distance_km[CLOUD_LAYERS];  // in order; 1e6: the ray stays in it
@@ -44,7 +46,8 @@ InterfaceAir InterfacesOn(vec3 direction) {
     bool is_there = rises ? next <= CLOUD_LAYERS : next >= 0;
     float z = 1e-3 * cloud_interface[clamp(rises ? next : next + 1, 0, CLOUD_LAYERS)].x;
     is_there = is_there && (rises || PerigeeAltitude(h, mu, PLANET_RADIUS) < z);
-    float d = rises ? DistanceUpTo(h, mu, z, PLANET_RADIUS) : DistanceDownTo(h, mu, z, PLANET_RADIUS);
+    float d = rises ? DistanceUpTo(h, mu, z, PLANET_RADIUS)
+                    : DistanceDownTo(h, mu, z, PLANET_RADIUS);
     of.distance_km[i] = is_there ? d : 1e6;
     of.number[i + 1] = is_there ? next : of.number[i];
     AirTo air = AirToPoint(direction, min(of.distance_km[i], 1e3));
@@ -65,6 +68,19 @@ vec4 AirInShadow(InterfaceAir of, float distance_km, AirTo air) {
     last = i + 1;
   }
   return sum + AirFactor(of, last, air);
+}
+
+// Returns what clouds add to the light of the air up to the last interface that a ray reaches.
+vec4 ShadowedBefore(InterfaceAir of) {
+  vec4 sum = vec4(0.0), single = vec4(0.0), diffuse = vec4(0.0);
+  for (int i = 0; i < CLOUD_LAYERS; ++i) {
+    if (of.distance_km[i] >= kToSpace_km) continue;
+    AirTo part = AirTo(of.single[i] - single, of.diffuse[i] - diffuse, vec4(1.0));
+    sum += AirFactor(of, i, part) - (part.single + part.diffuse);
+    single = of.single[i];
+    diffuse = of.diffuse[i];
+  }
+  return sum;
 }
 
 // Returns the light of the beam, the sky and the ground that a screen scatters to the eye.
@@ -140,8 +156,12 @@ CloudScreens ScreensOn(ivec2 texel) {
 // @param is_key  whether it lights the clouds, too.
 vec4 AddedOn(vec3 direction, float length_km, CloudScreens screens, bool is_key) {
   InterfaceAir interfaces = InterfacesOn(direction);
-  AirTo whole = AirToPoint(direction, length_km);
-  vec4 added = AirInShadow(interfaces, length_km, whole) - (whole.single + whole.diffuse);
+  // Tables of the air end above land, so that air behind the last interface of a ray to space is
+  // that of a clear sky.
+  AirTo whole = AirToPoint(direction, min(length_km, 1e3));
+  vec4 added = length_km < kToSpace_km
+                   ? AirInShadow(interfaces, length_km, whole) - (whole.single + whole.diffuse)
+                   : ShadowedBefore(interfaces);
   for (int n = 0; n < CLOUD_LAYERS; ++n) {
     if (n >= screens.count) break;
     vec4 of = screens.gathered[n];

@@ -31,36 +31,44 @@ const float kLeastPeakDepth = 1e-3, kDeepestPeak = 200.0;
 LayerNodes layer;
 float layer_rows, layer_row_m;  // of the table of extinction, and their number per metre
 
-// A sample of the shape.
-struct CloudSample {
-  int brick;         // as in cloud_bricks
-  vec3 in_brick;     // [bricks]
-  float depth;       // under the surface [m]
-  float extinction;  // [1/km]
+// A place in the bricks.
+struct InBricks {
+  int brick;      // as in cloud_bricks
+  vec3 in_brick;  // [bricks]
 };
 
 // @param place  metres in the lattice.
-CloudSample CloudAt(vec3 place) {
+InBricks BricksAt(vec3 place) {
   vec3 voxel = (place - vec3(0.0, 0.0, layer_shape.y)) * layer_shape.x;
   voxel.xy -= layer_voxels.xy * floor(voxel.xy * layer_periods_per_voxel);
-  voxel = clamp(voxel, vec3(0.0), layer_voxels - 1e-3);
-  ivec3 number = ivec3(voxel * (1.0 / kBrickVoxels));
-  vec3 share = voxel - kBrickVoxels * vec3(number);
-  CloudSample at;
-  at.brick = texelFetch(cloud_bricks, number, 0).r;
-  at.in_brick = share * (1.0 / kBrickVoxels);
-  ivec3 tile = ivec3(max(at.brick, 0)) >> ivec3(0, 10, 20) & 1023;
-  vec3 corner = (kBrickCorners * vec3(tile) + share + 0.5) * layer_texel;
-  float code = 255.0 * textureLod(cloud_depth, corner, 0.0).r;
-  at.depth = code - kSurfaceCode;
-  vec2 in_table = vec2((code + 0.5) * (1.0 / 256.0), layer_rows + layer_row_m * (place.z - layer.range.x));
-  at.extinction = textureLod(cloud_extinction, in_table, 0.0).r;
-  if (at.brick < 0 || at.depth <= 0.0) at.extinction = 0.0;
-  return at;
+  voxel = clamp(voxel, vec3(0.0), layer_voxels - 1e-3) * (1.0 / kBrickVoxels);
+  ivec3 number = ivec3(voxel);
+  return InBricks(texelFetch(cloud_bricks, number, 0).r, voxel - vec3(number));
 }
 
-// Returns the distance to the border of the empty bricks around a sample [m].
-float ClearAhead(CloudSample at, vec3 direction) {
+// Returns the code of the depth at a place in a brick with values.
+float CodeAt(InBricks at) {
+  ivec3 tile = ivec3(max(at.brick, 0)) >> ivec3(0, 10, 20) & 1023;
+  vec3 corner =
+      (kBrickCorners * vec3(tile) + kBrickVoxels * at.in_brick + 0.5) * layer_texel;
+  return 255.0 * textureLod(cloud_depth, corner, 0.0).r;
+}
+
+// Returns the extinction of a code at an altitude [1/m].
+float ExtinctionOf(float code, float altitude) {
+  vec2 at = vec2((code + 0.5) * (1.0 / 256.0), layer_rows + layer_row_m * (altitude - layer.range.x));
+  return 1e-3 * textureLod(cloud_extinction, at, 0.0).r;
+}
+
+// Returns the extinction at a place [1/m].
+float ExtinctionAt(vec3 place) {
+  InBricks at = BricksAt(place);
+  float per_m = ExtinctionOf(CodeAt(at), place.z);
+  return at.brick < 0 ? 0.0 : per_m;
+}
+
+// Returns the distance to the border of the empty bricks around a place [m].
+float ClearAhead(InBricks at, vec3 direction) {
   float reach = float(-at.brick);
   vec3 ahead = mix(at.in_brick + (reach - 1.0), reach - at.in_brick, step(0.0, direction));
   vec3 exit = ahead * layer_shape.z / max(abs(direction), vec3(1e-6));
@@ -74,7 +82,7 @@ float DepthToLight(vec3 place, vec3 offset) {
   const float kLength = 30.0;
   for (int i = 0; i < CLOUD_SUN_STEPS; ++i) {
     float step_m = i == 0 ? kLength : 2.0 * kLength;
-    depth += 1e-3 * step_m * CloudAt(place + (ahead + 0.5 * step_m) * beam_towards).extinction;
+    depth += step_m * ExtinctionAt(place + (ahead + 0.5 * step_m) * beam_towards);
     ahead += step_m;
   }
 #endif
@@ -162,24 +170,30 @@ vec4 GatheredAlong(vec3 direction, float length_km) {
   vec2 light = vec2(0.0);
   int steps = 0;
   while (steps < CLOUD_STEPS && t < stretch.end && passed > kLeastPassed) {
-    // Software drivers evaluate both sides of a branch. This loop has only what finds the cloud.
+    // Software drivers evaluate both sides of a branch, so that each of these loops has only what it
+    // needs: passing empty bricks, approaching the surface, and the light in the cloud.
     vec3 offset, place;
-    CloudSample at;
-    for (; steps < CLOUD_STEPS && t < stretch.end; ++steps) {
-      if (t > stretch.hole) t = max(t, stretch.hole_end);
-      offset = OffsetOn(ray, t);
-      place = vec3(layer.place.xy, 0.0) + offset;
-      at = CloudAt(place);
-      if (at.extinction > 0.0) break;
-      vec3 heading = vec3(level, ray.rise + 2.0 * ray.bend * t);
-      float clear = at.brick < 0 ? ClearAhead(at, heading) : -0.5 * at.depth;
-      t += max(clear, 6.0 + 0.002 * t);
+    InBricks at;
+    float code = 0.0, least = 6.0;
+    for (; steps < CLOUD_STEPS; ++steps) {
+      for (; steps < CLOUD_STEPS; ++steps) {
+        if (t > stretch.hole) t = max(t, stretch.hole_end);
+        offset = OffsetOn(ray, t);
+        place = vec3(layer.place.xy, 0.0) + offset;
+        at = BricksAt(place);
+        least = 6.0 + 0.003 * t;
+        if (at.brick >= 0 || t >= stretch.end) break;
+        t += max(ClearAhead(at, vec3(level, ray.rise + 2.0 * ray.bend * t)), least);
+      }
+      code = CodeAt(at);
+      if (code > kSurfaceCode || t >= stretch.end) break;
+      t += max(0.6 * (kSurfaceCode - code), least);
     }
     ++steps;
-    float per_m = t < stretch.end ? 1e-3 * at.extinction : 0.0;
-    float length_m = min(0.5 / max(scale * per_m, 1e-6), 40.0 + 0.002 * t);
-    length_m = max(min(length_m, 4.0 + 0.4 * at.depth), 6.0 + 0.002 * t);
-    length_m = min(length_m, stretch.end - t + 0.01);
+    float per_m = t < stretch.end && at.brick >= 0 ? ExtinctionOf(code, place.z) : 0.0;
+    float length_m = min(0.5 / max(scale * per_m, 1e-6), 40.0 + 0.005 * t);
+    length_m = max(min(length_m, 4.0 + 0.4 * (code - kSurfaceCode)), least);
+    length_m = min(length_m, max(stretch.end - t, 0.0) + 0.01);
     float more = per_m * length_m;
     float to_light = DepthToLight(place, offset);
     float peak_depth = clamp((1.0 - scale) * (to_light + depth + 0.5 * more), kLeastPeakDepth, kDeepestPeak);

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// Clouds in the viewer: values of textures against the tables that they are made from, and pictures
+// against the renderer's.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
+#include <memory>
+#include <vector>
+
+#include "atmosphere/math/constants.h"
+#include "renderer/effects/effect_choice.h"
+#include "renderer/lit_clouds/cloud_layers.h"
+#include "renderer/picture/picture_layers.h"
+#include "renderer/picture/render.h"
+#include "renderer/scene/scene_clouds.h"
+#include "renderer/scene/scene_options.h"
+#include "renderer/terrain/land_source.h"
+#include "tests/fixtures/sanitized.h"
+#include "tests/viewer/air/shared_air.h"
+#include "tests/viewer/shaders/headless.h"
+#include "viewer/clouds/cloud_texels.h"
+#include "viewer/passes/sky_painter.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+constexpr const char* kMorning = "2026-06-21T08:00:00Z";
+// The sun is 6 degrees high.
+constexpr const char* kEvening = "2026-06-21T18:45:00Z";
+
+// Returns a scene over the bare planet with a small field of clouds.
+Scene CloudyScene(const std::string& clouds, const char* time) {
+  Scene scene;
+  scene.place = {46.5, 8.0, 0.0};
+  scene.time = ParseInstant(time);
+  scene.terrain.kind = TerrainSource::Kind::kNone;
+  scene.clouds = CloudsFromText(clouds);
+  for (SceneCloud& layer : scene.clouds) layer.options.period_m = 5120.0;
+  return scene;
+}
+
+SolvedClouds SolvedCumulus() {
+  const Scene scene = CloudyScene("cumulus 0.3", kMorning);
+  CloudsByTime clouds(scene, 0.0, 6371e3);
+  return *clouds.At(*scene.time, glm::normalize(glm::dvec3(0.5, 0.3, 0.8)));
+}
+
+double Value(HalfBits bits) { return static_cast<double>(glm::unpackHalf1x16(bits)); }
+
+// Returns the extinction [1/m] at the corner of a voxel, as clouds/march.glsl finds it.
+double ExtinctionOfTexels(const CloudLayerTexels& layer, const std::array<int, 3>& voxel) {
+  const auto number = static_cast<std::size_t>(
+      (voxel[2] / 8 * layer.bricks[1] + voxel[1] / 8) * layer.bricks[0] + voxel[0] / 8);
+  const std::int32_t brick = layer.brick[number];
+  if (brick < 0) return 0.0;
+  const int x = 9 * (brick & 1023) + voxel[0] % 8, y = 9 * (brick >> 10 & 1023) + voxel[1] % 8,
+            z = 9 * (brick >> 20 & 1023) + voxel[2] % 8;
+  const std::size_t texel = static_cast<std::size_t>((z * 9 * layer.tiles[1] + y)) *
+                                static_cast<std::size_t>(9 * layer.tiles[0]) +
+                            static_cast<std::size_t>(x);
+  const int code = layer.depth[texel];
+  const double altitude_m = layer.origin_m.z + voxel[2] * layer.voxel_m;
+  const double row = (CloudLayerTexels::kExtinctionRows - 1) * (altitude_m - layer.range.low_m) /
+                     (layer.range.high_m - layer.range.low_m);
+  const auto below =
+      static_cast<std::size_t>(std::clamp(row, 0.0, CloudLayerTexels::kExtinctionRows - 2.0));
+  const auto at = [&](std::size_t of_row) {
+    return 1e-3 * Value(layer.extinction[of_row * CloudLayerTexels::kBytes +
+                                         static_cast<std::size_t>(code)]);
+  };
+  return std::lerp(at(below), at(below + 1), row - static_cast<double>(below));
+}
+
+// The table of altitudes has 128 rows, and halves have 11 bits.
+TEST(CloudTexels, ExtinctionAtCornersIsThatOfTheField) {
+  const SolvedClouds clouds = SolvedCumulus();
+  const CloudTexels texels = TexelsOfClouds(clouds);
+  const CloudLayerTexels& layer = texels.layer.front();
+  const CloudField& field = clouds.layers->front().field;
+  int in_cloud = 0;
+  double difference = 0.0, sum = 0.0;
+  for (int z = 0; z < 8 * layer.bricks[2]; ++z) {
+    for (int y = 3; y < 8 * layer.bricks[1]; y += 7) {
+      for (int x = 2; x < 8 * layer.bricks[0]; x += 5) {
+        const double expected =
+            field.Extinction_per_m(layer.origin_m + layer.voxel_m * (glm::dvec3(x, y, z) + 1e-6));
+        const double found = ExtinctionOfTexels(layer, {x, y, z});
+        in_cloud += expected > 1e-3 ? 1 : 0;
+        difference += std::abs(found - expected);
+        sum += expected;
+      }
+    }
+  }
+  EXPECT_GT(in_cloud, 100);
+  EXPECT_LT(difference, 0.01 * sum);
+}
+
+// Returns the root mean square error of sources by four patterns, relative to that of the sources.
+double ErrorOfPatterns(const CloudMoments& moments, const CloudOptics& optics,
+                       const std::vector<HalfBits>& components, const glm::vec4* basis,
+                       const CloudLayerTexels& layer) {
+  const CloudCellLattice lattice = moments.cells().lattice();
+  double squares = 0.0, all = 0.0;
+  for (int row = 3; row < CloudLayerTexels::kElevations; row += 13) {
+    for (int column = 5; column < CloudLayerTexels::kAzimuths; column += 31) {
+      const double elevation = kPi * ((row + 0.5) / CloudLayerTexels::kElevations - 0.5);
+      const double azimuth = 2.0 * kPi * (column + 0.5) / CloudLayerTexels::kAzimuths;
+      const glm::dvec3 view(std::cos(elevation) * std::sin(azimuth),
+                            std::cos(elevation) * std::cos(azimuth), std::sin(elevation));
+      const CloudHarmonics factors = optics.SourceFactors(-view);
+      const glm::vec4 functions = basis[row * CloudLayerTexels::kAzimuths + column];
+      for (std::size_t cell = 0; cell < moments.cells().full(); cell += 7) {
+        double expected = 0.0, found = 0.0;
+        for (std::size_t k = 0; k < kCloudMoments; ++k)
+          expected += static_cast<double>(factors[k]) * static_cast<double>(moments.Of(cell)[k]);
+        const glm::ivec3 at((moments.cells().Middle(cell) - lattice.origin_m) / lattice.cell_m);
+        const auto texel =
+            static_cast<std::size_t>((at.z * layer.cells[1] + at.y) * layer.cells[0] + at.x);
+        for (std::size_t p = 0; p < 4; ++p)
+          found += Value(components[4 * texel + p]) *
+                   static_cast<double>(functions[static_cast<int>(p)]);
+        squares += (found - expected) * (found - expected);
+        all += expected * expected;
+      }
+    }
+  }
+  return std::sqrt(squares / all);
+}
+
+TEST(CloudTexels, FourPatternsHoldTheLightOfHigherOrders) {
+  const SolvedClouds clouds = SolvedCumulus();
+  const CloudTexels texels = TexelsOfClouds(clouds);
+  const CloudLayerTexels& layer = texels.layer.front();
+  const CloudLight& light = clouds.light.front();
+  const std::size_t half = layer.basis.size() / 2;
+  EXPECT_LT(ErrorOfPatterns(light.sun_moments().moments, light.optics(), layer.sun,
+                            layer.basis.data(), layer),
+            0.06);
+  EXPECT_LT(ErrorOfPatterns(light.sky_moments().moments, light.optics(), layer.sky,
+                            layer.basis.data() + half, layer),
+            0.06);
+}
+
+TEST(CloudTexels, NodesOfLightHaveTheTransmittanceOfTheMap) {
+  const SolvedClouds clouds = SolvedCumulus();
+  const CloudTexels texels = TexelsOfClouds(clouds);
+  const CloudSunTexels& sun = texels.sun;
+  const CloudSunTexels::Layer& layer = sun.layer.front();
+  const CloudLayerTexels& place = texels.layer.front();
+  for (int level = 0; level < layer.levels; level += 5) {
+    for (int node = 7; node < sun.nodes; node += 101) {
+      const double z = layer.low_m + level * layer.level_m;
+      const glm::dvec2 foot = glm::dvec2(place.origin_m) +
+                              glm::dvec2(node + 0.5, 11.5) / double(sun.nodes) * place.size_m;
+      const glm::dvec3 point(foot + (z - layer.low_m) * layer.slope, z);
+      const auto texel = static_cast<std::size_t>(((layer.first + level) * sun.nodes + 11)) *
+                             static_cast<std::size_t>(sun.nodes) +
+                         static_cast<std::size_t>(node);
+      EXPECT_NEAR(Value(sun.transmittance[texel]), clouds.light.front().SunTransmittance(point),
+                  1e-3);
+    }
+  }
+}
+
+constexpr struct CloudPictureSize {
+  int width, height;
+} kCloudPicture{160, 90}, kSmallCloudPicture = tests::ScaledDown(kCloudPicture, {48, 27});
+constexpr int kCloudSamples = 4;
+
+// The differences of pixels with clouds.
+ErrorStatistics DifferenceInClouds(const HdrImage& reference, const HdrImage& painted) {
+  const std::vector<bool> edges = EdgesOf(reference);
+  const double floor = ChangeFloor(reference);
+  std::vector<double> changes;
+  for (const ImageLayer& layer : reference.layers) {
+    if (layer.name != "clouds.T") continue;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      if (!edges[i] && layer.values[i] < 0.9F)
+        changes.push_back(PixelChange(reference.rgb[i], painted.rgb[i], floor));
+    }
+  }
+  return ErrorStatistics(std::move(changes));
+}
+
+/// A view of clouds by the renderer's fast method and by the painter at high quality.
+ErrorStatistics ViewDifference(const Scene& scene, double height_m, double heading_deg,
+                               double pitch_deg) {
+  CameraPose eye{scene.place, heading_deg * kRadiansPerDegree, pitch_deg * kRadiansPerDegree, 0.0,
+                 70.0 * kRadiansPerDegree};
+  eye.place.height_m = height_m;
+  const PaintedView view{eye, *scene.time, kSmallCloudPicture.width, kSmallCloudPicture.height};
+  RenderSettings settings;
+  settings.width = view.width;
+  settings.height = view.height;
+  settings.samples_per_pixel = kCloudSamples;
+  settings.filter = PixelFilter::Kind::kBox;
+  settings.layers = LayersOfEdges();
+  settings.layers.push_back(PictureLayer::kClouds);
+  CameraSample camera(view.now);
+  camera.poses = {eye};
+  const HdrImage reference = SceneRenderer(scene).Render(camera, settings);
+  SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kHigh),
+                     tests::SharedAirOf(scene));
+  painter.WaitUntilReady(view, kCloudSamples);
+  painter.Paint(view, kCloudSamples);
+  return DifferenceInClouds(reference, painter.picture().Read());
+}
+
+class CloudsInPictures : public tests::Headless {};
+
+// Small pictures have more edges of clouds a pixel than large ones.
+constexpr double kMostMean = 0.08, kMostOf99 = 0.35;
+
+TEST_F(CloudsInPictures, FromTheGroundAreThoseOfTheRenderer) {
+  const ErrorStatistics difference =
+      ViewDifference(CloudyScene("cumulus 0.3", kMorning), 2.0, 60.0, 20.0);
+  EXPECT_LT(difference.mean(), kMostMean);
+  EXPECT_LT(difference.Quantile(0.99), kMostOf99);
+}
+
+TEST_F(CloudsInPictures, FromAboveAreThoseOfTheRenderer) {
+  const ErrorStatistics difference =
+      ViewDifference(CloudyScene("cumulus 0.3", kMorning), 4000.0, 200.0, -20.0);
+  EXPECT_LT(difference.mean(), kMostMean);
+  EXPECT_LT(difference.Quantile(0.99), kMostOf99);
+}
+
+TEST_F(CloudsInPictures, TowardsALowSunAreThoseOfTheRenderer) {
+  const ErrorStatistics difference =
+      ViewDifference(CloudyScene("cumulus 0.3", kEvening), 2.0, 295.0, 10.0);
+  EXPECT_LT(difference.mean(), kMostMean);
+  EXPECT_LT(difference.Quantile(0.99), kMostOf99);
+}
+
+}  // namespace
+}  // namespace alpenglow::viewer
