@@ -272,16 +272,21 @@ TEST_F(Skyview, InstrumentsOnAWideViewGiveAMessage) {
   EXPECT_THAT(Run(picture).error, Not(HasSubstr("field of view"))) << "it is all shown";
 }
 
-TEST_F(Skyview, CloudsOfASceneGiveAMessage) {
+// A stratus of the depth of 400 m hides the blue of the zenith.
+TEST_F(Skyview, CloudsOfASceneHideTheSky) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-  WriteText(folder_ / "cloudy.toml",
-            std::string(kBareSceneText) + "[[cloud]]\ngenus = \"cirrus\"\n");
-  const std::string options = " --headless --size 16x9 --screenshot " + InFolder("v.png");
-  const std::string file = InFolder("cloudy.toml");
-  const Outcome outcome = Run(file + options);
-  EXPECT_EQ(outcome.status, 0) << outcome.error;
-  EXPECT_THAT(outcome.error, HasSubstr("skyview: the clouds of " + file +
-                                       " are not drawn; skyseries draws them\n"));
+  WriteText(folder_ / "cloudy.toml", std::string(kBareSceneText) +
+                                         "[camera]\nheight_m = 2.0\npitch = 80\n"
+                                         "[[cloud]]\ngenus = \"stratus\"\nperiod_m = 2560\n");
+  const auto zenith = [&](const std::string& clouds) {
+    const Outcome outcome = Run(InFolder("cloudy.toml") + clouds +
+                                " --headless --size 16x9 --screenshot " + InFolder("v.exr"));
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return ReadExr(folder_ / "v.exr").at(8, 4);
+  };
+  const auto clear = zenith(" --clouds none"), cloudy = zenith("");
+  EXPECT_GT(clear[2], 1.5F * clear[0]) << "blue and red";
+  EXPECT_LT(cloudy[2], 1.3F * cloudy[0]);
 }
 
 TEST_F(Skyview, AReportMakesTheAirAndItsCloudsGiveAMessage) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What clouds leave of the light of the sky, and what they add to it: CloudsBlock of cloud_painter.h.
+// What clouds leave of the light of the sky, and what they add to it: CloudsBlock of cloud_textures.h.
 // Defined before this text: CLOUD_LAYERS. A place is given in the flat frame of the clouds relative
 // to the eye: metres east and north along the ground, and the altitude [m].
 //
