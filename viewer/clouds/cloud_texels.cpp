@@ -270,6 +270,15 @@ CloudLayerTexels LayerTexels(const CloudLight& light) {
   return layer;
 }
 
+/// Returns the distance between levels. Along a beam they are further apart, and transmittance is linear
+/// between them.
+double LevelStep_m(const CloudSunDepths& sun) {
+  constexpr double kPerSine = 3.0, kLeast_m = 10.0;
+  if (sun.map() == nullptr) return 2.0 * CloudSunTexels::kLevel_m;
+  return std::clamp(kPerSine * sun.to_sun().z * CloudSunTexels::kLevel_m, kLeast_m,
+                    CloudSunTexels::kLevel_m);
+}
+
 /// Returns the levels of one layer. A light without a sheared map has levels down to the ground.
 CloudSunTexels::Layer LevelsOf(const CloudLight& light, int first) {
   const CloudField& field = light.field();
@@ -284,8 +293,7 @@ CloudSunTexels::Layer LevelsOf(const CloudLight& light, int first) {
     levels.clear_from_m = 1e9;  // a low sun shines through clouds far away
   }
   const double height_m = std::max(field.top_altitude_m() - levels.low_m, 1.0);
-  const double step_m =
-      light.sun().map() ? CloudSunTexels::kLevel_m : 2.0 * CloudSunTexels::kLevel_m;
+  const double step_m = LevelStep_m(light.sun());
   levels.levels = 1 + static_cast<int>(std::ceil(height_m / step_m));
   levels.level_m = height_m / (levels.levels - 1);
   return levels;
