@@ -19,7 +19,7 @@ constexpr double kNodesEvery_m = 40.0, kFarthestNode_m = 80.0;
 constexpr double kStepOutside = 0.3;
 // The light of the rest of a ray is that of its beginning once this is left; its transmittance is 0
 // once that is left, which hides the disc of the sun behind an optical depth of 11.
-constexpr double kLeastLit = 0.03;
+constexpr double kLeastLit = 0.02;
 constexpr double kLeastTransmittance = 5e-3;
 constexpr int kMostSteps = 20000;
 
