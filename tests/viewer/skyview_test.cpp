@@ -277,7 +277,7 @@ TEST_F(Skyview, CloudsOfASceneHideTheSky) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "cloudy.toml", std::string(kBareSceneText) +
                                          "[camera]\nheight_m = 2.0\npitch = 80\n"
-                                         "[[cloud]]\ngenus = \"stratus\"\nperiod_m = 2560\n");
+                                         "[[cloud]]\ngenus = \"stratus\"\n");
   const auto zenith = [&](const std::string& clouds) {
     const Outcome outcome = Run(InFolder("cloudy.toml") + clouds +
                                 " --headless --size 16x9 --screenshot " + InFolder("v.exr"));
