@@ -28,7 +28,7 @@ std::vector<double> HarmonicsOf(const LightWay& way) {
 }
 
 double Into(const std::vector<double>& harmonics, const std::vector<double>& source) {
-  return std::inner_product(source.begin(), source.end(), harmonics.begin(), 0.0);
+  return std::inner_product(harmonics.begin(), harmonics.end(), source.begin(), 0.0);
 }
 
 }  // namespace
@@ -123,7 +123,15 @@ double LayeredAir::AirWithin(const Layer& layer, const AltitudeRange& stretch_m)
 }
 
 Spectrum LayeredAir::FactorTowards(const AltitudeRange& stretch_m, const LightWay& way) const {
-  const std::vector<double> harmonics = HarmonicsOf(way);
+  return FactorFor(stretch_m, HarmonicsOf(way));
+}
+
+Spectrum LayeredAir::MeanFactor(const AltitudeRange& stretch_m) const {
+  return FactorFor(stretch_m, {1.0});
+}
+
+Spectrum LayeredAir::FactorFor(const AltitudeRange& stretch_m,
+                               const std::vector<double>& harmonics) const {
   std::vector<double> clouds(air_.bands(), 0.0), clear = clouds;
   for (const Layer& layer : layers_) {
     const double weight = layer.is_cloudy ? 0.0 : AirWithin(layer, stretch_m);

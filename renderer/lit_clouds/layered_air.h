@@ -60,6 +60,8 @@ class LayeredAir {
   /// @param stretch_m  altitudes of a part of a ray on one side of every cloud.
   /// @param way  in which the light travels, with the azimuth from that of the beam.
   [[nodiscard]] Spectrum FactorTowards(const AltitudeRange& stretch_m, const LightWay& way) const;
+  /// Returns the same for the mean over all directions.
+  [[nodiscard]] Spectrum MeanFactor(const AltitudeRange& stretch_m) const;
 
  private:
   /// Light of one band that a layer scatters more than once, by azimuth mode and degree
@@ -73,6 +75,9 @@ class LayeredAir {
     std::vector<Sources> bands;  // in its middle
   };
 
+  /// @param harmonics  of the way; the first one alone: of the mean over all directions.
+  [[nodiscard]] Spectrum FactorFor(const AltitudeRange& stretch_m,
+                                   const std::vector<double>& harmonics) const;
   void AddBand(const std::vector<LayeredCloud>& clouds, const LayeredSun& sun, std::size_t band);
   /// Returns the optical depth of the air of a layer that a stretch passes, in the first band.
   [[nodiscard]] double AirWithin(const Layer& layer, const AltitudeRange& stretch_m) const;

@@ -444,8 +444,12 @@ LitClouds::LightAround LitClouds::AroundLayer(std::size_t layer, const glm::dvec
 std::vector<LitClouds::InterfaceLight> LitClouds::Interfaces() const {
   std::vector<InterfaceLight> all;
   for (std::size_t i = 0; i <= layers(); ++i) {
-    const double low_m = i > 0 ? MiddleOf(i - 1) : -std::numeric_limits<double>::infinity();
-    all.push_back({low_m, air_left_[i], added_[i], diffuse_[i]});
+    constexpr double kEndless_m = std::numeric_limits<double>::infinity();
+    const double low_m = i > 0 ? MiddleOf(i - 1) : -kEndless_m;
+    const AltitudeRange gap_m{i > 0 ? RangeOf(i - 1).high_m : 0.0,
+                              i < layers() ? RangeOf(i).low_m : kEndless_m};
+    all.push_back({low_m, air_left_[i], AddedAt(i, gap_m.low_m),
+                   layered_ ? Blended(diffuse_[i], layered_->MeanFactor(gap_m)) : diffuse_[i]});
   }
   return all;
 }

@@ -54,7 +54,9 @@ class CloudFollower::Maker {
     if (!IsKept(moment)) {
       solved_.reset();
       CloudsByTime clouds(*moment.scene, ground_m_, medium.planet_radius_m);
-      solved_ = clouds.At(moment.now, moment.light.direction.seen);
+      // An eye so high sees every layer in any light, so that all are solved.
+      constexpr double kAnyAltitude_m = 1e12;
+      solved_ = clouds.At(moment.now, {moment.light.direction.seen, kAnyAltitude_m});
       texels_ = std::make_shared<const CloudTexels>(TexelsOfClouds(*solved_));
       kept_ = moment;
     }
