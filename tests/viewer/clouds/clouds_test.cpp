@@ -49,7 +49,7 @@ Scene CloudyScene(const std::string& clouds, const char* time) {
 SolvedClouds SolvedCumulus() {
   const Scene scene = CloudyScene("cumulus 0.3", kMorning);
   CloudsByTime clouds(scene, 0.0, 6371e3);
-  return *clouds.At(*scene.time, glm::normalize(glm::dvec3(0.5, 0.3, 0.8)));
+  return *clouds.At(*scene.time, {glm::normalize(glm::dvec3(0.5, 0.3, 0.8))});
 }
 
 double Value(HalfBits bits) { return static_cast<double>(glm::unpackHalf1x16(bits)); }
