@@ -276,6 +276,14 @@ void ViewerApp::Record(bool records) {
   });
 }
 
+void ViewerApp::Use(FlightSoFar use) {
+  if (use == FlightSoFar::kSave) {
+    SaveFlight();
+  } else {
+    FlyAgain();
+  }
+}
+
 void ViewerApp::SaveFlight() {
   Try([&] {
     const CameraPath path = flown_.Path();

@@ -92,13 +92,14 @@ class ViewerApp final : public FlightCommands {
   void SetTime(const std::string& text) override;
   void Request(const PictureOrder& picture) override;
   void Record(bool records) override;
-  void SaveFlight() override;
-  void FlyAgain() override;
+  void Use(FlightSoFar use) override;
   void Switch(WindowPart part) override;
 
   void Display(const std::string& text, bool is_warning = false);
   void ReportPictures();
   void ReportOutcomesAtEnd();
+  void SaveFlight();
+  void FlyAgain();
   void RecordFlight(double seconds);
   void ReadLuminance(const InputFrame& input);
   void Age(double seconds);

@@ -295,7 +295,8 @@ double CloudLowSunMap::TransmittanceAround(const glm::dvec3& point) const {
 
 std::uint64_t CloudLowSunMap::hash() const {
   Fnv1a hash;
-  hash.AddBytes({reinterpret_cast<const char*>(value_.data()), bytes()});
+  hash.AddBytes(
+      {reinterpret_cast<const char*>(value_.data()), value_.size() * sizeof(std::uint16_t)});
   return hash.hash();
 }
 

@@ -306,9 +306,9 @@ constexpr Action kActions[] = {
     NeedsPicture(Once(kCaptureKeys, "screenshot, linear EXR", "Shift+F3",
                       [](FlightCommands& flight) { flight.Request({.extension = ".exr"}); })),
     Once(kCaptureKeys, "write the flight so far to a file", "Shift+F2",
-         [](FlightCommands& flight) { flight.SaveFlight(); }),
+         [](FlightCommands& flight) { flight.Use(FlightSoFar::kSave); }),
     Once(kCaptureKeys, "fly this flight again", "Ctrl+R",
-         [](FlightCommands& flight) { flight.FlyAgain(); }),
+         [](FlightCommands& flight) { flight.Use(FlightSoFar::kShowAgain); }),
 };
 
 constexpr std::pair<std::string_view, int> kKeyNames[] = {

@@ -40,6 +40,10 @@ struct PictureOrder {
   bool with_instruments = false;
 };
 
+/// Uses of the flight since its beginning: it is written to a file, or shown from its beginning and then
+/// continued.
+enum class FlightSoFar { kSave, kShowAgain };
+
 /// Changes that keys, gamepad and panels can make. Failures are reported to the user, not thrown.
 class FlightCommands {
  public:
@@ -68,9 +72,7 @@ class FlightCommands {
   virtual void Request(const PictureOrder& picture) = 0;
   /// Starts or ends the record of the flight.
   virtual void Record(bool records) = 0;
-  virtual void SaveFlight() = 0;
-  /// Shows this flight from its beginning, and then continues it.
-  virtual void FlyAgain() = 0;
+  virtual void Use(FlightSoFar use) = 0;
   virtual void Switch(WindowPart part) = 0;
   /// Ends the flight as soon as all requested pictures are written; a second call drops them.
   virtual void Leave() = 0;

@@ -90,7 +90,7 @@ void PaintedScene::Use(const PaintSizes& sizes) {
   land_->SetDetail(sizes.land_detail, sizes.land_growth);
 }
 
-void PaintedScene::Replace(const LandSource& land) {
+void PaintedScene::Take(const LandSource& land) {
   auto other = std::make_unique<Landscape>(land, LandSizeOf(sizes_), fixed_.ellipsoid);
   leaving_.push_back(std::exchange(land_, std::move(other)));
   heights_version_ = -1;

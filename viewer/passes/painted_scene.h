@@ -60,12 +60,13 @@ class PaintedScene {
                const PaintSizes& sizes, FirstAir first_air);
 
   void Use(const PaintSizes& sizes);
-  /// Changes the medium. The new one is shown when it is solved.
-  void Replace(const Medium& medium) { air_.Replace(medium); }
-
-  /// Changes the land to other land of the same kind. The previous land, its lighting and its
-  /// shadows disappear immediately.
-  void Replace(const LandSource& land);
+  /// Changes the medium, the land or the clouds. A new medium is shown when it is solved, and new clouds
+  /// fade in when they are made. The previous land, its lighting and its shadows disappear immediately;
+  /// the new land is of the same kind.
+  template <typename Part>
+  void Replace(const Part& part) {
+    Take(part);
+  }
 
   /// Shows no land until the land around the eye is loaded.
   void AwaitLand() { awaits_land_ = true; }
@@ -112,10 +113,11 @@ class PaintedScene {
   }
   [[nodiscard]] const SceneMedia& media() const { return media_; }
   [[nodiscard]] const CloudFollower& clouds() const { return clouds_; }
-  /// Replaces the clouds. The new ones fade in when they are made.
-  void Replace(const std::vector<SceneCloud>& clouds) { clouds_.Use(clouds); }
 
  private:
+  void Take(const Medium& medium) { air_.Replace(medium); }
+  void Take(const LandSource& land);
+  void Take(const std::vector<SceneCloud>& clouds) { clouds_.Use(clouds); }
   /// Followers either do their work in the background (Update) or complete it (WaitUntilReady).
   enum class Pace { kFollow, kWait };
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);

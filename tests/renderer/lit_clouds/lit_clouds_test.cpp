@@ -388,8 +388,6 @@ TEST(LitClouds, SingleCloudsSeeTheBrightHorizon) {
   EXPECT_NEAR(on_deck[0], 1.0F, 0.1F) << "less light from below than counted";
 }
 
-// A thousand candelas below the second of two screens; air takes a few hundredths of the light, and
-// the glow of the air is little of it.
 /// Returns sunlight past a crest of 5000 m from south to north, 4000 m to the east.
 std::shared_ptr<const TerrainSunlight> PastACrest(const std::filesystem::path& folder,
                                                   const glm::dvec3& to_sun) {
@@ -422,7 +420,7 @@ TEST_F(CloudsBehindMountains, HaveNoSunlightInTheShadow) {
     for (const float band : difference.values()) EXPECT_EQ(band, 0.0F) << x_m;
   }
   const CloudRayLight grey = stage.clouds->light.front().Radiance({{}, kVertical});
-  const LocalLight sun = LocalLightAt(stage.geometry, {0.0, 0.0, grey.mean_distance_m}, stage.sun);
+  const LocalLight sun = LocalLightAt(stage.geometry, {0.0, 0.0, 1400.0}, stage.sun);  // the top
   const Spectrum beam = stage.air.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   for (const double x_m : {-200.0, 500.0}) {
     const Spectrum difference = difference_at(x_m);
@@ -457,6 +455,8 @@ TEST(LitClouds, SkyBehindCloudsIsTheirLightAndWhatTheyLeave) {
   EXPECT_TRUE(std::ranges::equal(above.values(), clear.values())) << "no cloud in the way";
 }
 
+// A thousand candelas below the second of two screens; air takes a few hundredths of the light, and
+// the glow of the air is little of it.
 TEST(LitClouds, LampsLightCloudsByTheInverseSquare) {
   Scene scene = tests::NightScene();
   scene.lights = {tests::LightAt(600.0, 0.0, 0.0, 1000.0)};

@@ -50,8 +50,9 @@ class RecordedCommands : public FlightCommands {
   void SetTime(const std::string& text) override { requests.time = text; }
   void Request(const PictureOrder& picture) override { requests.picture = picture; }
   void Record(bool records) override { requests.record = records; }
-  void SaveFlight() override { requests.saves = true; }
-  void FlyAgain() override { requests.flies_again = true; }
+  void Use(FlightSoFar use) override {
+    (use == FlightSoFar::kSave ? requests.saves : requests.flies_again) = true;
+  }
   void Switch(WindowPart part) override { requests.parts.push_back(part); }
   void Leave() override { requests.leaves = true; }
   void Report(const std::string& message) override { requests.messages.push_back(message); }
