@@ -217,8 +217,10 @@ ErrorStatistics ViewDifference(const Scene& scene, double height_m, double headi
 
 class CloudsInPictures : public tests::Headless {};
 
-// Small pictures have more edges of clouds a pixel than large ones.
-constexpr double kMostMean = 0.08, kMostOf99 = 0.35;
+// Pictures of 48 by 27 pixels have more edges of clouds a pixel than larger ones: 0.121 and 0.53 from the
+// ground, and 0.26 and 1.33 towards a low sun.
+constexpr double kMostMean = tests::ScaledDown(0.08, 0.14);
+constexpr double kMostOf99 = tests::ScaledDown(0.35, 0.6);
 
 TEST_F(CloudsInPictures, FromTheGroundAreThoseOfTheRenderer) {
   const ErrorStatistics difference =
@@ -238,8 +240,8 @@ TEST_F(CloudsInPictures, FromAboveAreThoseOfTheRenderer) {
 TEST_F(CloudsInPictures, TowardsALowSunAreNearThoseOfTheRenderer) {
   const ErrorStatistics difference =
       ViewDifference(CloudyScene("cumulus 0.3", kEvening), 2.0, 295.0, 10.0);
-  EXPECT_LT(difference.mean(), 0.15);
-  EXPECT_LT(difference.Quantile(0.99), 0.95);
+  EXPECT_LT(difference.mean(), tests::ScaledDown(0.15, 0.3));
+  EXPECT_LT(difference.Quantile(0.99), tests::ScaledDown(0.95, 1.5));
 }
 
 }  // namespace
