@@ -83,7 +83,7 @@ CloudFloor::CloudFloor(const CloudColumns& columns, const std::vector<CloudBaseL
     const glm::dvec3& travel = light[i].travel;
     const glm::dvec2 shift_m = depth_m / -travel.z * glm::dvec2(travel);
     radiances[i] = light[i].radiance;
-    Spread(columns_, kTraceWidth * glm::length(shift_m), radiances[i]);
+    Spread(columns_, std::hypot(kTraceWidth * glm::length(shift_m), kLeastTrace_m), radiances[i]);
   });
   const int lines = columns.count[1];
   tbb::parallel_for(0, lines, [&](int line) {

@@ -8,7 +8,8 @@
 //
 // A few directions would throw a few images of each cloud on the ground. Each direction stands for a
 // cone, whose trace is about as wide as h |t_i| is long between neighbours: G_i is a Gaussian function
-// of the standard deviation kTraceWidth h |t_i|. The mean over a period is that without it.
+// of the standard deviation kTraceWidth h |t_i|, and at least about kLeastTrace_m, because a track
+// shows a line of its cone only. The mean over a period is that without it.
 #pragma once
 
 #include <array>
@@ -38,7 +39,7 @@ struct CloudColumns {
 /// Immutable; safe to use from many threads.
 class CloudFloor {
  public:
-  static constexpr double kTraceWidth = 0.4;
+  static constexpr double kTraceWidth = 0.4, kLeastTrace_m = 40.0;
 
   /// @param depth_m  of the ground below the base, >= 0.
   CloudFloor(const CloudColumns& columns, const std::vector<CloudBaseLight>& light, double depth_m);
