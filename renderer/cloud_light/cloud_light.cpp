@@ -223,15 +223,9 @@ CloudLight CloudLight::Unlit(const CloudField& field, const CloudScatterers& sca
   return light.WithMethod(options.method);
 }
 
-CloudLight CloudLight::WithSun(const glm::dvec3& to_sun) const {
+CloudLight CloudLight::WithSun(const std::optional<glm::dvec3>& to_sun) const {
   CloudLight moved = *this;
   moved.sun_light_ = std::make_shared<const SunLight>(*field_light_, to_sun);
-  return moved.WithMethod(method_);
-}
-
-CloudLight CloudLight::WithoutSun() const {
-  CloudLight moved = *this;
-  moved.sun_light_ = std::make_shared<const SunLight>(*field_light_, std::nullopt);
   return moved.WithMethod(method_);
 }
 

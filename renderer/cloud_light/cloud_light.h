@@ -110,8 +110,7 @@ class CloudLight {
 
   /// Returns the light of the same field under another sun, or under none. It shares the light of sky
   /// and ground.
-  [[nodiscard]] CloudLight WithSun(const glm::dvec3& to_sun) const;
-  [[nodiscard]] CloudLight WithoutSun() const;
+  [[nodiscard]] CloudLight WithSun(const std::optional<glm::dvec3>& to_sun) const;
 
   /// Returns the light of the same solution by another method. It shares all tables. Throws InputError
   /// for a number of paths out of range.

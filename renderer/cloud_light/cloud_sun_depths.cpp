@@ -34,7 +34,8 @@ const glm::dvec3& CloudSunDepths::to_sun() const {
 }
 
 double CloudSunDepths::OpticalDepth(const glm::dvec3& point) const {
-  if (IsUnlit()) return kNoLight;
+  constexpr double kOpaque = 64.0;
+  if (IsUnlit()) return kOpaque;
   return map() ? OpticalDepthToSun(*field_, *map(), point) : low_map()->OpticalDepth(point);
 }
 

@@ -47,9 +47,9 @@ class CloudSunDepths {
   [[nodiscard]] glm::dvec3 ToSunAt(const glm::dvec3& point) const {
     return low_sun() ? low_sun()->ToSunAt(point) : to_sun();
   }
-  /// Returns the optical depth from a point in a cloud to the sun; without one kNoLight.
+  /// Returns the optical depth from a point in a cloud to the sun; without one so much that no light is
+  /// left.
   [[nodiscard]] double OpticalDepth(const glm::dvec3& point) const;
-  static constexpr double kNoLight = 64.0;
   /// Returns the transmittance for points in clear air and on the ground; 1 without a sun.
   [[nodiscard]] double Transmittance(const glm::dvec3& point) const;
   /// Returns the same as a mean around a point.

@@ -58,10 +58,8 @@ SolvedClouds CloudsByTime::Solved(double time_s, const Light& light) const {
   SolvedClouds solved;
   if (same_time != made_.end()) {
     solved.layers = same_time->clouds->layers;
-    for (const CloudLight& same : same_time->clouds->light) {
-      const auto beam = BeamIn(same.field(), light);
-      solved.light.push_back(beam ? same.WithSun(*beam) : same.WithoutSun());
-    }
+    for (const CloudLight& same : same_time->clouds->light)
+      solved.light.push_back(same.WithSun(BeamIn(same.field(), light)));
     return solved;
   }
   solved.layers = std::make_shared<const CloudLayers>(CloudFieldsOf(scene_, time_s));

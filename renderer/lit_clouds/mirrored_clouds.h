@@ -23,7 +23,7 @@
 
 namespace alpenglow::renderer {
 
-/// What clouds do to the light of a clear sky.
+/// The change of the light of a clear sky by clouds.
 struct CloudChange {
   Spectrum left;   // factor on the light of the clear sky
   Spectrum added;  // per unit solar irradiance [1/sr]

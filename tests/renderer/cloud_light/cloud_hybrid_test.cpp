@@ -279,7 +279,7 @@ TEST(CloudLightMethods, GiveTheSameRayTheSameLight) {
   const CloudField field = tests::SphereClouds(0.05);
   const CloudLight light(field, {CloudPhases(tests::LobeOf(0.85)), 1.0}, {SunAt35Degrees()},
                          {.factor = {.rays = 0}, .method = CloudLightMethod::kHybrid});
-  const CloudLight moved = light.WithSun({0.0, 0.0, 1.0}).WithSun(SunAt35Degrees());
+  const CloudLight moved = light.WithSun(glm::dvec3(0.0, 0.0, 1.0)).WithSun(SunAt35Degrees());
   for (CloudRay ray : RaysThrough(field, 1280.0, 8)) {
     const double sun = light.Radiance(ray).sun;
     EXPECT_EQ(light.Radiance(ray).sun, sun);

@@ -204,7 +204,7 @@ TEST(LitClouds, CloudsGlowRedFromBelowAfterSunset) {
 TEST(LitClouds, NightHasTheSameLightWithoutASolutionForTheSun) {
   const CloudStage stage(HighClouds(), SunOverClouds(-9.0));
   const auto unlit = std::make_shared<SolvedClouds>(*stage.clouds);
-  unlit->light.front() = stage.clouds->light.front().WithoutSun();
+  unlit->light.front() = stage.clouds->light.front().WithSun(std::nullopt);
   const LitClouds with = stage.Lit(), without(unlit, stage.geometry, stage.air, stage.sun);
   int screens = 0;
   for (int i = 1; i <= 200; ++i) {
