@@ -12,7 +12,7 @@
 // whole layer.
 //
 // Between beams the transmittance is linear, so that the mean of a shadow is that of the beams, but
-// clouds are blurred over cells of 20 m. OpticalDepthToSun() therefore takes steps of 5 m times 1.3^n
+// clouds are blurred over cells of 20 m. OpticalDepthToSun() therefore takes steps of 5 m times 1.2^n
 // through the field first, and the map 120 m ahead, or where the optical depth is 8. Steps that grow
 // faster make the mean transmittance too large, because their optical depth has more noise, and with
 // the map 60 m ahead it is 4 to 5 % too small under a sun at 12 degrees.
