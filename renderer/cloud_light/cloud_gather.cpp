@@ -51,9 +51,10 @@ struct CloudGather::March {
       : ray(along),
         line(*gather.field_, along.origin, along.direction),
         end_m(until_m),
-        peak(gather.optics_->peak().AtAngle(
-            glm::dot(along.direction, gather.to_sun_->ToSunAt(along.origin)))),
-        factors(gather.optics_->SourceFactors(-along.direction)) {}
+        factors(gather.optics_->SourceFactors(-along.direction)) {
+    parts.once.cos_scattering = glm::dot(along.direction, gather.to_sun_->ToSunAt(along.origin));
+    peak = gather.optics_->peak().AtAngle(parts.once.cos_scattering);
+  }
 
   /// Returns the light of the whole ray. The rest of a ray that was not followed to its end is like
   /// its beginning.
@@ -83,6 +84,7 @@ CloudRayParts CloudGather::March::Finished(bool has_equilibrium) const {
     whole.mean_distance_m = weighted_m / lit;
     const double factor = (1.0 - whole.scaled_transmittance) / lit;
     whole.first *= factor;
+    for (double& each : whole.once.by_depth) each *= factor;
     for (double& each : whole.higher) each *= factor;
     whole.sky *= factor;
     whole.ground *= factor;
@@ -148,10 +150,10 @@ void CloudGather::Inside::Add(const CloudGather& gather, March& march) const {
     MoveNodes(gather, march);
     const Node light = Node::Between(march.before, march.after, middle_m());
     const double share = passed * (1.0 - left);
-    const double peak_share = 1.0 - scale;
-    march.parts.first +=
-        share * optics.scaled_albedo() * std::exp(-scale * light.to_sun) *
-        march.peak.Effective(peak_share * (light.to_sun + march.depth + 0.5 * depth));
+    const double beam = share * optics.scaled_albedo() * std::exp(-scale * light.to_sun);
+    const double peak_depth = (1.0 - scale) * (light.to_sun + march.depth + 0.5 * depth);
+    march.parts.first += beam * march.peak.Effective(peak_depth);
+    march.parts.once.Add(beam, peak_depth);
     const CloudHats hats = CloudHatsAt(light.to_sun);
     march.parts.higher[hats.node] += share * light.sun * (1.0 - hats.share);
     march.parts.higher[hats.node + 1] += share * light.sun * hats.share;

@@ -22,6 +22,7 @@
 #include "renderer/cloud_light/cloud_optics.h"
 #include "renderer/cloud_light/cloud_sun_depths.h"
 #include "renderer/cloud_light/cloud_tracking.h"
+#include "renderer/cloud_phase/phase_colours.h"
 #include "renderer/clouds/cloud_field.h"
 
 namespace alpenglow::renderer {
@@ -44,7 +45,8 @@ struct CloudHats {
 
 /// Light along a ray, and what clouds leave of the light behind it.
 struct CloudRayParts {
-  double first = 0.0;  // of the sun's beam, for unit irradiance across it [1/sr]
+  double first = 0.0;    // of the sun's beam, for unit irradiance across it [1/sr]
+  OnceScattered once{};  // the same before it is multiplied by p_eff, for its colours
   std::array<double, kCloudFactorNodes> higher{};  // of higher orders, by hat
   double sky = 0.0;     // for unit radiance from all directions above, without the sky behind
   double ground = 0.0;  // for unit radiance from all directions below, without the ground behind

@@ -170,7 +170,10 @@ struct CloudLight::SunLight {
     if (plane_parallel) return plane_parallel->Along(ray, length_m);
     if (layer) return layer->UnlitAlong(ray, length_m);
     CloudRayParts parts = gather.Along(ray, length_m);
-    if (depths.IsUnlit()) parts.first = 0.0;
+    if (depths.IsUnlit()) {
+      parts.first = 0.0;
+      parts.once = {};
+    }
     return parts;
   }
   /// Returns the factor for rays that begin after some collisions.
@@ -257,7 +260,8 @@ CloudRayLights CloudLight::RadianceByBoth(const CloudRay& ray, double length_m) 
                          .ground = light.ground + reflected * irradiance.ground,
                          .transmittance = parts.transmittance,
                          .scaled_transmittance = parts.scaled_transmittance,
-                         .mean_distance_m = parts.mean_distance_m};
+                         .mean_distance_m = parts.mean_distance_m,
+                         .once = parts.once};
   };
   const CloudRayLight fast = over_ground({sun_light_->factor.Sun(parts), parts.sky, parts.ground});
   if (method_ == CloudLightMethod::kFast || parts.transmittance >= 1.0) return {fast, fast};

@@ -70,6 +70,7 @@ struct CloudRayLight {
   /// Distance of the clouds, weighted by the light that they scatter into the ray; 0 if there are
   /// none.
   double mean_distance_m = 0.0;
+  OnceScattered once{};  // sunlight of first order by the fast method, for its colours
 };
 
 /// Light of one ray by the fast method, and by the method of choice.

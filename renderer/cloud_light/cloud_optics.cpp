@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/cloud_light/cloud_optics.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -45,6 +48,24 @@ std::vector<double> RadiusShares(const CloudField& field) {
   return share;
 }
 
+/// @param share  of the extinction by bin; empty if the radius does not matter.
+PhaseFunction MeanPhase(const CloudPhases& phases, const std::vector<double>& share) {
+  if (!phases.depends_on_radius()) return phases.Drawn(1.0, 0.0);
+  std::vector<double> angle_deg, per_sr;
+  for (int i = 0; i <= kMeanAngles; ++i) {
+    angle_deg.push_back(180.0 * std::pow(static_cast<double>(i) / kMeanAngles, 3));
+    const double cosine = std::cos(angle_deg.back() * kRadiansPerDegree);
+    double mean = 0.0;
+    for (std::size_t bin = 0; bin < share.size(); ++bin) {
+      if (share[bin] == 0.0) continue;
+      mean += share[bin] * phases.Value(BinRadius_um(static_cast<double>(bin) + 0.5), cosine);
+    }
+    per_sr.push_back(mean);
+  }
+  return {.kind = PhaseKind::kTable,
+          .table = std::make_shared<const PhaseTable>(std::move(angle_deg), std::move(per_sr))};
+}
+
 }  // namespace
 
 CloudHarmonics CloudHarmonicsOf(const glm::dvec3& direction) {
@@ -69,21 +90,18 @@ CloudHarmonics CloudHarmonicsOf(const glm::dvec3& direction) {
 }
 
 PhaseFunction MeanCloudPhase(const CloudField& field, const CloudPhases& phases) {
-  if (!phases.depends_on_radius()) return phases.Drawn(1.0, 0.0);
-  const std::vector<double> share = RadiusShares(field);
-  std::vector<double> angle_deg, per_sr;
-  for (int i = 0; i <= kMeanAngles; ++i) {
-    angle_deg.push_back(180.0 * std::pow(static_cast<double>(i) / kMeanAngles, 3));
-    const double cosine = std::cos(angle_deg.back() * kRadiansPerDegree);
-    double mean = 0.0;
-    for (std::size_t bin = 0; bin < share.size(); ++bin) {
-      if (share[bin] == 0.0) continue;
-      mean += share[bin] * phases.Value(BinRadius_um(static_cast<double>(bin) + 0.5), cosine);
-    }
-    per_sr.push_back(mean);
-  }
-  return {.kind = PhaseKind::kTable,
-          .table = std::make_shared<const PhaseTable>(std::move(angle_deg), std::move(per_sr))};
+  return MeanCloudPhases(field, {phases}).front();
+}
+
+std::vector<PhaseFunction> MeanCloudPhases(const CloudField& field,
+                                           const std::vector<CloudPhases>& bands) {
+  const bool depends_on_radius = std::ranges::any_of(
+      bands, [](const CloudPhases& phases) { return phases.depends_on_radius(); });
+  const std::vector<double> share = depends_on_radius ? RadiusShares(field) : std::vector<double>{};
+  std::vector<PhaseFunction> means(bands.size());
+  tbb::parallel_for(std::size_t{0}, bands.size(),
+                    [&](std::size_t i) { means[i] = MeanPhase(bands[i], share); });
+  return means;
 }
 
 CloudOptics::CloudOptics(const CloudField& field, const CloudScatterers& scatterers)

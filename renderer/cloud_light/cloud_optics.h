@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "atmosphere/medium/phase.h"
 #include "renderer/cloud_light/cloud_path_tracer.h"
@@ -35,6 +36,9 @@ using CloudHarmonics = std::array<float, kCloudMoments>;
 /// Returns the mean phase function of a field, weighted by extinction; that for 10 um if the field
 /// has no cloud.
 [[nodiscard]] PhaseFunction MeanCloudPhase(const CloudField& field, const CloudPhases& phases);
+/// Returns the same for several wavelengths.
+[[nodiscard]] std::vector<PhaseFunction> MeanCloudPhases(const CloudField& field,
+                                                         const std::vector<CloudPhases>& bands);
 
 /// Immutable; safe to use from many threads.
 class CloudOptics {

@@ -108,8 +108,9 @@ double PlaneParallelSun::DownAtBase() const {
   return left_ * (is_from_below_ ? fluxes.up : fluxes.down);
 }
 
-double PlaneParallelSun::ScatteredOnce(const CloudRay& ray, const PlaneParallelCloud::Crossing& lit,
-                                       double mu) const {
+void PlaneParallelSun::AddScatteredOnce(const CloudRay& ray,
+                                        const PlaneParallelCloud::Crossing& lit, double mu,
+                                        CloudRayParts& parts) const {
   constexpr int kNodes = 16;
   const LayerBeam& beam = cloud_->beam();
   const double scale = beam.peak_scale();
@@ -121,21 +122,23 @@ double PlaneParallelSun::ScatteredOnce(const CloudRay& ray, const PlaneParallelC
   const bool begins_bright = end >= begin;
   const double brightest = std::min(begin, end), change = std::abs(end - begin);
   const double fading = -std::expm1(-change);
-  const LayerBeam::Angle angle = beam.AtAngle(glm::dot(ray.direction, to_sun_));
+  parts.once.cos_scattering = glm::dot(ray.direction, to_sun_);
+  const LayerBeam::Angle angle = beam.AtAngle(parts.once.cos_scattering);
+  const double weight = change > 1e-6 ? depth * fading / change : depth;
+  const double light = left_ * cloud_->albedo() * weight * std::exp(-brightest);
   const GaussRule& rule = GaussLegendre(kNodes);
-  double mean = 0.0;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double share =
         change > 1e-6 ? -std::log1p(-rule.node[i] * fading) / change : rule.node[i];
     const double to_eye = depth * (begins_bright ? share : 1.0 - share);
-    mean += rule.weight[i] * angle.At(beam.PeakDepth(lit.from / mu_s_ + (1.0 + rise) * to_eye));
+    const double peak_depth = beam.PeakDepth(lit.from / mu_s_ + (1.0 + rise) * to_eye);
+    parts.first += light * rule.weight[i] * angle.At(peak_depth);
+    parts.once.Add(light * rule.weight[i] * beam.beside_peak(), peak_depth);
   }
-  const double weight = change > 1e-6 ? depth * fading / change : depth;
-  return cloud_->albedo() * mean * weight * std::exp(-brightest);
 }
 
-double PlaneParallelSun::SunAlong(const CloudRay& ray,
-                                  const PlaneParallelCloud::Crossing& crossing) const {
+void PlaneParallelSun::AddSun(const CloudRay& ray, const PlaneParallelCloud::Crossing& crossing,
+                              CloudRayParts& parts) const {
   PlaneParallelCloud::Crossing lit = crossing;
   double mu = -ray.direction.z;
   if (is_from_below_) {
@@ -146,15 +149,15 @@ double PlaneParallelSun::SunAlong(const CloudRay& ray,
   const LightWay way{mu, AzimuthFromBeam(ray.direction, to_sun_)};
   const double left = std::exp(-lit.scaled);
   const double behind = left > 0.0 ? left * field_.RadianceOfHigherOrders(lit.to, way) : 0.0;
-  const double higher = std::max(field_.RadianceOfHigherOrders(lit.from, way) - behind, 0.0);
-  return left_ * (ScatteredOnce(ray, lit, mu) + higher);
+  parts.higher[0] += left_ * std::max(field_.RadianceOfHigherOrders(lit.from, way) - behind, 0.0);
+  AddScatteredOnce(ray, lit, mu, parts);
 }
 
 CloudRayParts PlaneParallelSun::Along(const CloudRay& ray, double length_m) const {
   const auto crossing = cloud_->CrossingOf(ray, length_m);
   if (!crossing) return {};
   CloudRayParts parts = cloud_->Unlit(ray, *crossing);
-  parts.first = SunAlong(ray, *crossing);
+  AddSun(ray, *crossing, parts);
   return parts;
 }
 

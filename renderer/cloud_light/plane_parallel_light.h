@@ -80,7 +80,7 @@ class PlaneParallelSun {
  public:
   PlaneParallelSun(std::shared_ptr<const PlaneParallelCloud> cloud, const CloudSunDepths& to_sun);
 
-  /// Returns the light along a ray. That of the sun is all in CloudRayParts::first.
+  /// Returns the light along a ray. That of the sun of higher orders is in the first hat.
   [[nodiscard]] CloudRayParts Along(const CloudRay& ray, double length_m) const;
 
   /// Diffuse light through top and base, for unit irradiance across the beam.
@@ -88,13 +88,13 @@ class PlaneParallelSun {
   [[nodiscard]] double DownAtBase() const;
 
  private:
-  /// Returns sunlight along a part of a ray.
-  [[nodiscard]] double SunAlong(const CloudRay& ray,
-                                const PlaneParallelCloud::Crossing& crossing) const;
+  /// Adds sunlight along a part of a ray.
+  void AddSun(const CloudRay& ray, const PlaneParallelCloud::Crossing& crossing,
+              CloudRayParts& parts) const;
   /// @param lit  the part, with depths below the lit side. @param mu  of the light that reaches the
   ///     eye, > 0 towards the lit side.
-  [[nodiscard]] double ScatteredOnce(const CloudRay& ray, const PlaneParallelCloud::Crossing& lit,
-                                     double mu) const;
+  void AddScatteredOnce(const CloudRay& ray, const PlaneParallelCloud::Crossing& lit, double mu,
+                        CloudRayParts& parts) const;
 
   std::shared_ptr<const PlaneParallelCloud> cloud_;
   glm::dvec3 to_sun_;

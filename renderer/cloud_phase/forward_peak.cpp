@@ -11,6 +11,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
+#include "renderer/cloud_phase/peak_moments.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -18,45 +19,6 @@ namespace {
 // Angles are uniform in their root, which makes them dense in the peak; depths in their logarithm.
 constexpr std::size_t kAngles = 512, kDepths = ForwardPeak::kDepths;
 constexpr double kShallowest = 1e-3;
-// Degree of the series, and the degree of its window exp(-(l / w)^2). The diffraction by crystals is
-// so narrow that its series does not end here, and would ring over all angles without a window. The
-// window rounds off angles below 0.2 degrees. The series of a lobe that ends before this degree needs no
-// window.
-constexpr int kSeriesDegree = 1500;
-constexpr double kWindowDegree = 400.0;
-constexpr double kEnded = 1e-5;
-// Within the first angle the phase function has the window too, so that the peak and its removal are
-// equally round; from the second one on it is exact, with halos.
-constexpr double kRoundWithin_deg = 1.0, kExactFrom_deg = 2.0;
-
-/// Legendre coefficients of a phase function, and a window over their degrees.
-struct PeakMoments {
-  std::vector<double> chi, window;
-
-  explicit PeakMoments(const PhaseFunction& phase)
-      : chi(LegendreCoefficients(phase, kSeriesDegree)), window(chi.size(), 1.0) {
-    // Tables are linear between angles, so that their series never end.
-    if (phase.kind != PhaseKind::kTable && std::abs(chi.back()) < kEnded) return;
-    for (std::size_t l = 0; l < window.size(); ++l) {
-      window[l] = std::exp(-std::pow(static_cast<double>(l) / kWindowDegree, 2));
-    }
-  }
-};
-
-/// Returns the phase function, round near the forward direction.
-/// @param series  (2 l + 1) / (4 pi) P_l.
-double RoundPhase(const PhaseFunction& phase, double angle, const PeakMoments& moments,
-                  const std::vector<double>& series) {
-  const double exact = Phase(phase, std::cos(angle));
-  const double share =
-      (angle / kRadiansPerDegree - kRoundWithin_deg) / (kExactFrom_deg - kRoundWithin_deg);
-  if (share >= 1.0) return exact;
-  double round = 0.0;
-  for (std::size_t l = 0; l < series.size(); ++l) {
-    round += moments.window[l] * moments.chi[l] * series[l];
-  }
-  return std::lerp(round, exact, std::max(share, 0.0));
-}
 
 double PeakDepthAt(std::size_t i) {
   return kShallowest *
@@ -101,9 +63,7 @@ PeakFactors PeakFactorsOf(const PeakMoments& moments, int degree, double fractio
     const double x = PeakDepthAt(i);
     for (std::size_t l = 0; l < chi.size(); ++l) {
       const double a = static_cast<int>(l) <= degree ? 1.0 : chi[l] / fraction;
-      // (e^(-x (1 - a)) - e^(-x)) / x = e^(-x (1 - a)) (1 - e^(-x a)) / x, without cancellation.
-      const double orders = -std::exp(-x * (1.0 - a)) * std::expm1(-x * a) / x;
-      factors.effective.push_back(moments.window[l] * fraction * (orders - a));
+      factors.effective.push_back(moments.window[l] * fraction * (AllOrdersOfPeak(a, x) - a));
       factors.broadened.push_back(moments.window[l] * chi[l] * std::expm1(-x * (1.0 - a)));
     }
   }
@@ -127,7 +87,8 @@ ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
   }
   const PeakFactors factors = PeakFactorsOf(moments, degree, fraction_);
   tbb::parallel_for(std::size_t{0}, kAngles, [&](std::size_t angle) {
-    const std::vector<double> series = LegendreSeries(kSeriesDegree, std::cos(PeakAngleAt(angle)));
+    const std::vector<double> series =
+        LegendreSeries(kPeakSeriesDegree, std::cos(PeakAngleAt(angle)));
     const double value = RoundPhase(phase, PeakAngleAt(angle), moments, series);
     for (std::size_t depth = 0; depth < kDepths; ++depth) {
       double effective = value, broadened = value;

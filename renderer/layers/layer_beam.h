@@ -49,6 +49,8 @@ class LayerBeam {
   /// Returns s, the factor on optical depths with which light in the forward peak counts as not
   /// scattered.
   [[nodiscard]] double peak_scale() const { return peak_scale_; }
+  /// Returns 1 - f, the fraction of the scattered light that is not in the peak.
+  [[nodiscard]] double beside_peak() const { return peak_ ? 1.0 - peak_->fraction() : 1.0; }
   /// Returns x, the optical depth of the peak, for an optical depth of the layer.
   [[nodiscard]] double PeakDepth(double depth) const { return (1.0 - peak_scale_) * depth; }
 

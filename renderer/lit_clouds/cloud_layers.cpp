@@ -12,7 +12,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// The wavelength of the phase functions. The index of water hardly depends on it.
+/// The wavelength of the phase functions with which light is solved.
 constexpr double kPhase_nm = 550.0;
 /// Sun and moon of two frames.
 constexpr std::size_t kKept = 4;
@@ -33,7 +33,17 @@ CloudLowSunOptions LowSunOver(const CloudField& field, double planet_radius_m) {
 }
 
 CloudPhases PhasesOf(const SceneCloudField& layer) {
-  return layer.is_of_ice ? IcePhases(kPhase_nm) : DropletPhases(kPhase_nm);
+  return PhasesByBand(layer, {kPhase_nm}).front();
+}
+
+std::vector<CloudPhases> PhasesByBand(const SceneCloudField& layer,
+                                      const std::vector<double>& wavelengths_nm) {
+  std::vector<CloudPhases> phases;
+  for (const double wavelength_nm : wavelengths_nm) {
+    const double within_nm = std::clamp(wavelength_nm, 300.0, 1000.0);
+    phases.push_back(layer.is_of_ice ? IcePhases(within_nm) : DropletPhases(within_nm));
+  }
+  return phases;
 }
 
 bool CloudsByTime::HasAny() const { return !scene_.clouds.empty(); }

@@ -20,8 +20,12 @@ namespace alpenglow::renderer {
 /// Layers of clouds at one time, from the lowest to the highest base.
 using CloudLayers = std::vector<SceneCloudField>;
 
-/// Returns the phase functions of the droplets or crystals of a layer, the same for all bands.
+/// Returns the phase functions of the droplets or crystals of a layer with which its light is solved,
+/// at 550 nm.
 [[nodiscard]] CloudPhases PhasesOf(const SceneCloudField& layer);
+/// Returns them at other wavelengths. Below 300 and above 1000 nm they are those of the nearest end.
+[[nodiscard]] std::vector<CloudPhases> PhasesByBand(const SceneCloudField& layer,
+                                                    const std::vector<double>& wavelengths_nm);
 
 /// Layers under one distant light. A light below kLowestCloudLight_deg counts as one in the zenith, as
 /// long as the farthest cloud in sight can see it. Below that, nothing is solved for it.

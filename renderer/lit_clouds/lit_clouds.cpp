@@ -132,6 +132,10 @@ LitClouds::LitClouds(std::shared_ptr<const SolvedClouds> clouds, const SceneGeom
                                            : Layer(i).optics().extinction_scale());
     suns.push_back({{clouds_, &Layer(i).sun()}, peak_scale_.back()});
     along_rays_.push_back(Layer(i).WithMethod(view.method, paths));
+    if (view.has_colours) {
+      colours_.emplace_back(Layer(i),
+                            PhasesByBand((*clouds_->layers)[i], air.medium().wavelengths_nm));
+    }
     highest_m = std::max(highest_m, RangeOf(i).high_m);
   }
   shadow_ = std::make_shared<const CloudShadow>(std::move(suns), highest_m, geometry.radius_m());
@@ -498,8 +502,9 @@ CloudScreen LitClouds::Screen(const CloudRayPart& grey, const glm::dvec3& point)
   const LocalLight at_entry = LocalLightAt(geometry_, entry, light_);
   const double past = PastOthers(grey.layer, InFlatFrame(point, geometry_.radius_m())) *
                       (past_terrain_ ? past_terrain_->At(point) : 1.0);
-  const Spectrum beam = static_cast<float>(past * at_entry.visible_fraction) *
-                        air_.BeamLeft(at_entry.altitude_m, at_entry.mu_s_effective);
+  Spectrum beam = static_cast<float>(past * at_entry.visible_fraction) *
+                  air_.BeamLeft(at_entry.altitude_m, at_entry.mu_s_effective);
+  if (!colours_.empty()) beam = beam * colours_[grey.layer].Of(grey.fast[0], grey.once);
   const LightAround around = AroundLayer(grey.layer, sun);
   const auto [from_sun, from_sky, from_ground] = grey.light;
   return {grey.distance_m, static_cast<float>(grey.scaled_transmittance),
@@ -538,7 +543,8 @@ std::vector<CloudRayPart> LitClouds::PartsOf(const glm::dvec3& origin, const Pix
                      .transmittance = fast.transmittance,
                      .scaled_transmittance = fast.scaled_transmittance,
                      .fast = {fast.sun, fast.sky, fast.ground},
-                     .light = {chosen.sun, chosen.sky, chosen.ground}});
+                     .light = {chosen.sun, chosen.sky, chosen.ground},
+                     .once = fast.once});
     left *= fast.scaled_transmittance;
     if (left < kNothing) break;
   }

@@ -8,6 +8,8 @@
 //
 //   L += T_i A (E_beam sun_i + L_sky sky_i + L_ground ground_i)
 //
+// The colours of fog bow, glory, corona and halo are a factor on sun_i (cloud_colours.h).
+//
 // Skylight is found above all clouds, and light from below on the ground. The air between these and a
 // cloud adds what it adds in a clear sky, times the mean fraction of light that reaches it. If all
 // layers are the same at every place, they are solved together with the air instead, in every direction
@@ -58,6 +60,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/solved_air.h"
+#include "renderer/cloud_light/cloud_colours.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/illumination/distant_light.h"
 #include "renderer/lamps/lamp_light.h"
@@ -154,6 +157,8 @@ struct CloudsInPicture {
   std::optional<PixelRays> pixels = std::nullopt;
   /// The light that mountains let through to clouds; null: all.
   std::shared_ptr<const TerrainSunlight> past_terrain = nullptr;
+  /// Whether light of first order has the colours of bows, glories, coronas and halos.
+  bool has_colours = false;
   /// The eye for which ground mirrors clouds. Nothing: mirrored rays are followed one by one.
   std::optional<MirrorEye> mirror = std::nullopt;
 };
@@ -278,6 +283,7 @@ class LitClouds {
 
   std::shared_ptr<const SolvedClouds> clouds_;
   std::vector<CloudLight> along_rays_;  // of each layer, by the method
+  std::vector<CloudColours> colours_;   // of each layer; empty: grey
   std::vector<double> peak_scale_;      // of each layer: s of cloud_shadow.h
   std::optional<SharedCloudLight> shared_;
   std::shared_ptr<const TerrainSunlight> past_terrain_;  // null: none

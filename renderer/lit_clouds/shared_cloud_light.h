@@ -25,6 +25,8 @@
 #include <optional>
 #include <vector>
 
+#include "renderer/cloud_phase/phase_colours.h"
+
 namespace alpenglow::renderer {
 
 /// The clouds of one layer on one chord of a ray.
@@ -35,6 +37,7 @@ struct CloudRayPart {
   double transmittance = 1.0, scaled_transmittance = 1.0;
   std::array<double, 3> fast{};   // light of sun, sky and ground by the fast method
   std::array<double, 3> light{};  // the same by the method of choice
+  OnceScattered once{};           // sunlight of first order by the fast method
 };
 
 /// A part of a ray near another one.

@@ -193,8 +193,11 @@ void FrameContext::LightClouds() {
     const DistantLight& light = source.light.source;
     source.clouds = std::make_shared<const LitClouds>(
         CloudsIn(light), scene_->geometry(), over_ground_->air, light,
-        CloudsInPicture{settings_.cloud_light, PixelRaysOf(camera(), geometry(), settings_),
-                        source.shadows, MirrorBelow(camera().eye(), geometry())});
+        CloudsInPicture{.method = settings_.cloud_light,
+                        .pixels = PixelRaysOf(camera(), geometry(), settings_),
+                        .past_terrain = source.shadows,
+                        .has_colours = true,
+                        .mirror = MirrorBelow(camera().eye(), geometry())});
   }
 }
 

@@ -5,14 +5,17 @@
 //
 // Spheres of water with the size distribution of Hansen (1971), J. Atmos. Sci. 28, 1400, and his
 // effective variance of fair-weather cumulus, 1/9. Water absorbs too little visible light to matter
-// here, and its refractive index is nearly constant (1.333 at 550 nm; Hale and Querry 1973, Appl.
-// Opt. 12, 555), so that the phase function depends on the size parameter 2 pi r_eff / wavelength
-// alone. Each of 8000 spheres, uniform in ln r, is computed once and serves all size parameters.
+// here, so that the phase function depends on the size parameter 2 pi r_eff / wavelength and on the
+// refractive index. The index is that of 400, 550 and 700 nm (Hale and Querry 1973, Appl. Opt. 12,
+// 555; in between it is linear to 0.0003). Each of 8000 spheres, uniform in ln r, is computed once for
+// every index and serves all size parameters.
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/math/constants.h"
@@ -22,7 +25,7 @@ namespace {
 
 using namespace alpenglow::atmosphere;
 
-constexpr double kIndex = 1.333;
+constexpr std::array kIndices{1.339, 1.333, 1.331};
 constexpr double kVariance = 1.0 / 9.0;
 constexpr double kSmallest = 1.0, kLargest = 2520.0;  // size parameters of spheres
 constexpr std::size_t kSpheres = 8000;
@@ -55,34 +58,48 @@ double Weight(double q, double scattering_efficiency) {
   return std::exp(std::log(q) / kVariance - (q - 1.0) / kVariance) * scattering_efficiency;
 }
 
+/// Returns the phase functions at angles by column.
+std::vector<std::vector<double>> Columns(double index, const std::vector<double>& sizes,
+                                         const std::vector<double>& angles_rad) {
+  std::vector<SphereScattering> spheres(kSpheres);
+  tbb::parallel_for(std::size_t{0}, kSpheres, [&](std::size_t i) {
+    spheres[i] = ScatterBySphere({index, 0.0}, SphereAt(i), angles_rad);
+    spheres[i].polarised = {};
+  });
+  std::vector<std::vector<double>> columns;
+  for (const double size : sizes) {
+    std::vector<double> light(angles_rad.size(), 0.0);
+    double all = 0.0;
+    for (std::size_t i = 0; i < kSpheres; ++i) {
+      const double weight = Weight(SphereAt(i) / size, spheres[i].scattering_efficiency);
+      for (std::size_t k = 0; k < light.size(); ++k) light[k] += weight * spheres[i].per_sr[k];
+      all += weight;
+    }
+    for (double& each : light) each /= all;
+    columns.push_back(std::move(light));
+  }
+  return columns;
+}
+
 }  // namespace
 
 int main() {
   const std::vector<double> angles = Angles_deg(), sizes = EffectiveSizes();
   std::vector<double> radians;
   for (const double angle : angles) radians.push_back(angle * kRadiansPerDegree);
-  std::vector<SphereScattering> spheres(kSpheres);
-  tbb::parallel_for(std::size_t{0}, kSpheres, [&](std::size_t i) {
-    spheres[i] = ScatterBySphere({kIndex, 0.0}, SphereAt(i), radians);
-    spheres[i].polarised = {};
-  });
+  std::vector<std::vector<double>> columns;
   fmt::print(
       "# Phase functions of water droplets [1/sr] by scattering angle; the names of the other "
-      "columns are effective size parameters. Computed by tests/bench/droplet_phase.cpp, which "
-      "names the sources.\nangle_deg");
-  for (const double size : sizes) fmt::print(",{:.4f}", size);
+      "columns are effective size parameters and refractive indices. Computed by "
+      "tests/bench/droplet_phase.cpp, which names the sources.\nangle_deg");
+  for (const double index : kIndices) {
+    for (const double size : sizes) fmt::print(",{:.4f}_{}", size, index);
+    for (auto& column : Columns(index, sizes, radians)) columns.push_back(std::move(column));
+  }
   fmt::print("\n");
   for (std::size_t k = 0; k < angles.size(); ++k) {
     fmt::print("{:.5g}", angles[k]);
-    for (const double size : sizes) {
-      double light = 0.0, all = 0.0;
-      for (std::size_t i = 0; i < kSpheres; ++i) {
-        const double weight = Weight(SphereAt(i) / size, spheres[i].scattering_efficiency);
-        light += weight * spheres[i].per_sr[k];
-        all += weight;
-      }
-      fmt::print(",{:.4g}", light / all);
-    }
+    for (const auto& column : columns) fmt::print(",{:.4g}", column[k]);
     fmt::print("\n");
   }
 }
