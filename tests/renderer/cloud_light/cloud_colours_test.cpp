@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/math/constants.h"
@@ -53,7 +55,7 @@ class ColouredField {
     return static_cast<double>(relative[1] / relative[0]);
   }
   [[nodiscard]] Estimate TracedRedOverBlue(const CloudRay& ray) const {
-    const CloudPathOptions options{.paths = tests::ScaledDown<std::size_t>(48000, 320)};
+    const CloudPathOptions options{.paths = tests::ScaledDown<std::size_t>(24000, 320)};
     const CloudEstimate blue = traced_[0].Radiance(ray, options).sun;
     const CloudEstimate red = traced_[1].Radiance(ray, options).sun;
     const double ratio = red.value / blue.value;
@@ -79,20 +81,22 @@ class ColouredField {
 };
 
 /// Expects the colour of rays to be that of paths of each wavelength.
-/// @param share  of the ratio that the approximation may be wrong.
+/// @param share  of the ratio that the approximation may be wrong. @param which  name of the case.
 void ExpectColoursOfPaths(const ColouredField& field, const std::vector<CloudRay>& rays,
-                          double share) {
-  double least = 10.0, most = 0.0;
+                          double share, const std::string& which) {
+  double least = 10.0, most = 0.0, worst = 0.0;
   for (const CloudRay& ray : rays) {
     const double found = field.RedOverBlue(ray, CloudLightMethod::kFast);
     const ColouredField::Estimate traced = field.TracedRedOverBlue(ray);
     EXPECT_NEAR(found, traced.value, 3.0 * traced.standard_error + share * traced.value);
-    EXPECT_LT(traced.standard_error, tests::ScaledDown(0.02, 1.0))
+    EXPECT_LT(traced.standard_error, tests::ScaledDown(0.04, 1.0))
         << "the test must be able to fail";
+    worst = std::max(worst, std::abs(found / traced.value - 1.0));
     least = std::min(least, found);
     most = std::max(most, found);
   }
-  EXPECT_GT(most, 1.1 * least) << "rays have different colours";
+  testing::Test::RecordProperty("worst_" + which, std::to_string(worst));
+  EXPECT_GT(most, 1.2 * least) << "rays have different colours";
 }
 
 // Rays pass the inner edge of the halo, which is red, its middle and its outside.
@@ -101,29 +105,30 @@ TEST(CloudColours, HaloOfAThinLayerHasTheColoursOfPaths) {
   std::vector<CloudRay> rays;
   for (const double away_deg : {18.0, 21.25, 21.75, 22.5, 25.0})
     rays.push_back({{0.0, 0.0, 0.0}, DirectionAt(kSun_deg + away_deg, 90.0)});
-  ExpectColoursOfPaths(field, rays, 0.03);
+  ExpectColoursOfPaths(field, rays, 0.03, "halo");
 }
 
-// The direction away from the sun is 35 degrees below the horizon.
+// The direction away from the sun is 35 degrees below the horizon. Rays meet the centre and the red ring of
+// the glory, and the middle and the red edge of the bow.
 TEST(CloudColours, FogBowAndGloryOfALayerHaveTheColoursOfPaths) {
   for (const double depth : {0.5, 3.0}) {
     const ColouredField field(tests::PlaneLayer(depth), DropletPhases);
     std::vector<CloudRay> rays;
-    for (const double away_deg : {0.5, 2.5, 35.0, 41.0, 47.0})
+    for (const double away_deg : {1.0, 2.5, 38.0, 46.0})
       rays.push_back({{0.0, 0.0, 3000.0}, DirectionAt(-kSun_deg - away_deg, 270.0)});
-    ExpectColoursOfPaths(field, rays, 0.03);
+    ExpectColoursOfPaths(field, rays, 0.03, std::to_string(depth));
   }
 }
 
 TEST(CloudColours, SingleCloudsHaveTheColoursOfPaths) {
   const ColouredField field(tests::SphereClouds(0.02), DropletPhases);
   std::vector<CloudRay> rays;
-  for (const double away_deg : {0.5, 2.5, 35.0, 41.0, 47.0}) {
+  for (const double away_deg : {1.0, 2.5, 38.0, 46.0}) {
     const glm::dvec3 direction = DirectionAt(-kSun_deg - away_deg, 270.0);
     // Through the middle of the largest sphere.
     rays.push_back({glm::dvec3(800.0, 1010.0, 1240.0) - 1500.0 * direction, direction});
   }
-  ExpectColoursOfPaths(field, rays, 0.03);
+  ExpectColoursOfPaths(field, rays, 0.03, "spheres");
 }
 
 TEST(CloudColours, AllMethodsHaveTheSameColours) {
