@@ -55,7 +55,7 @@ class ColouredField {
     return static_cast<double>(relative[1] / relative[0]);
   }
   [[nodiscard]] Estimate TracedRedOverBlue(const CloudRay& ray) const {
-    const CloudPathOptions options{.paths = tests::ScaledDown<std::size_t>(24000, 320)};
+    const CloudPathOptions options{.paths = tests::ScaledDown<std::size_t>(40000, 320)};
     const CloudEstimate blue = traced_[0].Radiance(ray, options).sun;
     const CloudEstimate red = traced_[1].Radiance(ray, options).sun;
     const double ratio = red.value / blue.value;
@@ -89,14 +89,14 @@ void ExpectColoursOfPaths(const ColouredField& field, const std::vector<CloudRay
     const double found = field.RedOverBlue(ray, CloudLightMethod::kFast);
     const ColouredField::Estimate traced = field.TracedRedOverBlue(ray);
     EXPECT_NEAR(found, traced.value, 3.0 * traced.standard_error + share * traced.value);
-    EXPECT_LT(traced.standard_error, tests::ScaledDown(0.04, 1.0))
+    EXPECT_LT(traced.standard_error, tests::ScaledDown(0.03, 1.0))
         << "the test must be able to fail";
     worst = std::max(worst, std::abs(found / traced.value - 1.0));
     least = std::min(least, found);
     most = std::max(most, found);
   }
   testing::Test::RecordProperty("worst_" + which, std::to_string(worst));
-  EXPECT_GT(most, 1.2 * least) << "rays have different colours";
+  EXPECT_GT(most, 1.15 * least) << "rays have different colours";
 }
 
 // Rays pass the inner edge of the halo, which is red, its middle and its outside.
@@ -111,7 +111,7 @@ TEST(CloudColours, HaloOfAThinLayerHasTheColoursOfPaths) {
 // The direction away from the sun is 35 degrees below the horizon. Rays meet the centre and the red ring of
 // the glory, and the middle and the red edge of the bow.
 TEST(CloudColours, FogBowAndGloryOfALayerHaveTheColoursOfPaths) {
-  for (const double depth : {0.5, 3.0}) {
+  for (const double depth : {0.5, 1.5}) {
     const ColouredField field(tests::PlaneLayer(depth), DropletPhases);
     std::vector<CloudRay> rays;
     for (const double away_deg : {1.0, 2.5, 38.0, 46.0})
@@ -120,8 +120,16 @@ TEST(CloudColours, FogBowAndGloryOfALayerHaveTheColoursOfPaths) {
   }
 }
 
+TEST(CloudColours, CoronaOfALayerHasTheColoursOfPaths) {
+  const ColouredField field(tests::PlaneLayer(2.0), DropletPhases);
+  std::vector<CloudRay> rays;
+  for (const double away_deg : {1.5, 3.0, 5.0, 8.0})
+    rays.push_back({{0.0, 0.0, 0.0}, DirectionAt(kSun_deg + away_deg, 90.0)});
+  ExpectColoursOfPaths(field, rays, 0.03, "corona");
+}
+
 TEST(CloudColours, SingleCloudsHaveTheColoursOfPaths) {
-  const ColouredField field(tests::SphereClouds(0.02), DropletPhases);
+  const ColouredField field(tests::SphereClouds(0.005), DropletPhases);
   std::vector<CloudRay> rays;
   for (const double away_deg : {1.0, 2.5, 38.0, 46.0}) {
     const glm::dvec3 direction = DirectionAt(-kSun_deg - away_deg, 270.0);

@@ -8,9 +8,11 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/lit_clouds/air_layers.h"
 #include "tests/fixtures/bare_scene.h"
@@ -33,7 +35,8 @@ const double kLowestCloudSine = std::sin(kLowestCloudLight_deg * kRadiansPerDegr
 
 /// Clouds over the bare planet in air of three bands, under a sun 40 degrees high or another one.
 struct CloudStage {
-  explicit CloudStage(CloudField field, const glm::dvec3& to_sun = kHighSun, double ground_m = 0.0)
+  explicit CloudStage(CloudField field, const glm::dvec3& to_sun = kHighSun, double ground_m = 0.0,
+                      const CloudPhases& phases = CloudPhases(tests::LobeOf(0.8)))
       : sun(SunOf(air, to_sun)), clouds([&] {
           auto layers = std::make_shared<CloudLayers>();
           layers->push_back({std::move(field), false});
@@ -42,7 +45,7 @@ struct CloudStage {
           options.factor.rays = 0;
           options.low_sun = LowSunOver(layers->front().field, geometry.radius_m());
           solved->light.emplace_back(
-              layers->front().field, CloudScatterers{CloudPhases(tests::LobeOf(0.8))},
+              layers->front().field, CloudScatterers{phases},
               CloudSurroundings{.to_sun = to_sun.z >= kLowestCloudSine ? to_sun : kVertical,
                                 .ground_altitude_m = ground_m},
               options);
@@ -61,7 +64,9 @@ struct CloudStage {
   DistantLight sun;
   std::shared_ptr<const SolvedClouds> clouds;
 
-  [[nodiscard]] LitClouds Lit() const { return {clouds, geometry, air, sun}; }
+  [[nodiscard]] LitClouds Lit(CloudsInPicture view = {}) const {
+    return {clouds, geometry, air, sun, std::move(view)};
+  }
   static DistantLight SunOf(const SolvedAir& air, const glm::dvec3& to_sun) {
     DistantLight light{LightSource::kSun, Unrefracted(to_sun), 0.00465, Spectrum(air.bands())};
     std::ranges::fill(light.irradiance.values(), 1.0F);
@@ -101,6 +106,22 @@ TEST(LitClouds, ScreenStandsInTheLayerAndIsLit) {
       << "8 optical depths, to the rounding of edges";
   EXPECT_GT(clouds.transmittance(), clouds.unscattered) << "with the forward peak";
   for (const float band : clouds.screens[0].radiance.values()) EXPECT_GT(band, 0.01F);
+}
+
+TEST(LitClouds, RingOfTheGloryIsRed) {
+  const CloudStage stage(tests::PlaneLayer(2.0), kHighSun, 0.0, DropletPhases(550.0));
+  const LitClouds grey = stage.Lit(), coloured = stage.Lit({.has_colours = true});
+  const auto relative_blueness = [&](double from_centre_deg) {
+    const double down_rad = std::asin(kHighSun.z) + from_centre_deg * kRadiansPerDegree;
+    const glm::dvec3 look(-std::cos(down_rad), 0.0, -std::sin(down_rad));
+    const auto radiance = [&](const LitClouds& lit) {
+      return lit.Along({0.0, 0.0, 3000.0}, look, kEndless).screens.front().radiance;
+    };
+    return stage.Blueness(radiance(coloured)) / stage.Blueness(radiance(grey));
+  };
+  // The ring of droplets of 10 um and its white centre.
+  EXPECT_LT(relative_blueness(2.5), 0.97);
+  EXPECT_NEAR(relative_blueness(1.0), 1.0, 0.02);
 }
 
 // A deck that covers the sky lights the ground as its own radiance does, seen from there: the
