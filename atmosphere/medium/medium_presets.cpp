@@ -264,6 +264,22 @@ bool LooksLikeFile(const std::string& text) {
 
 constexpr double kMostAerosol = 1000.0;
 
+/// Returns a coefficient at 550 nm, linear between the wavelengths in the logarithms of wavelength and
+/// coefficient; 0 if one of its neighbours is 0.
+/// @param exponent  of the power of the wavelength beyond the wavelengths.
+double CoefficientAt550(const std::vector<double>& wavelengths_nm,
+                        const std::vector<double>& coefficients, double exponent) {
+  constexpr double kGreen_nm = 550.0;
+  const std::vector<double>&x = wavelengths_nm, &y = coefficients;
+  const auto above = std::upper_bound(x.begin(), x.end(), kGreen_nm);
+  const auto i = static_cast<std::size_t>(above - x.begin());
+  if (above == x.begin()) return y.front() * std::pow(kGreen_nm / x.front(), exponent);
+  if (above == x.end()) return y.back() * std::pow(kGreen_nm / x.back(), exponent);
+  if (y[i - 1] == 0.0 || y[i] == 0.0) return 0.0;
+  const double share = std::log(kGreen_nm / x[i - 1]) / std::log(x[i] / x[i - 1]);
+  return y[i - 1] * std::pow(y[i] / y[i - 1], share);
+}
+
 /// Extinction at an altitude and 550 nm.
 struct AirAt550 {
   double molecules_per_m, aerosol_per_m;
@@ -399,19 +415,6 @@ Medium Changed(Medium medium, const AirChoice& choice) {
   }
   Validate(medium);
   return medium;
-}
-
-double CoefficientAt550(const std::vector<double>& wavelengths_nm,
-                        const std::vector<double>& coefficients, double exponent) {
-  constexpr double kGreen_nm = 550.0;
-  const std::vector<double>&x = wavelengths_nm, &y = coefficients;
-  const auto above = std::upper_bound(x.begin(), x.end(), kGreen_nm);
-  const auto i = static_cast<std::size_t>(above - x.begin());
-  if (above == x.begin()) return y.front() * std::pow(kGreen_nm / x.front(), exponent);
-  if (above == x.end()) return y.back() * std::pow(kGreen_nm / x.back(), exponent);
-  if (y[i - 1] == 0.0 || y[i] == 0.0) return 0.0;
-  const double share = std::log(kGreen_nm / x[i - 1]) / std::log(x[i] / x[i - 1]);
-  return y[i - 1] * std::pow(y[i] / y[i - 1], share);
 }
 
 double MoleculesAt550_per_m(const Medium& medium) {

@@ -44,14 +44,8 @@ struct AirChoice {
 /// Returns the changed medium. Throws InputError that names the value out of range.
 [[nodiscard]] Medium Changed(Medium medium, const AirChoice& choice);
 
-/// Returns a coefficient at 550 nm, linear between the wavelengths in the logarithms of wavelength and
-/// coefficient; 0 if one of its neighbours is 0.
-/// @param coefficients  one per wavelength, not negative.
-/// @param exponent  of the power of the wavelength beyond the wavelengths: -4 for molecules.
-[[nodiscard]] double CoefficientAt550(const std::vector<double>& wavelengths_nm,
-                                      const std::vector<double>& coefficients, double exponent);
-
-/// Returns the extinction coefficients of molecules and aerosol at altitude 0 and 550 nm [1/m].
+/// Returns the extinction coefficients of molecules and aerosol at altitude 0 and 550 nm [1/m]. They
+/// are interpolated linearly in the logarithms of wavelength and coefficient.
 [[nodiscard]] double MoleculesAt550_per_m(const Medium& medium);
 [[nodiscard]] double AerosolAt550_per_m(const Medium& medium);
 

@@ -16,18 +16,18 @@ constexpr double kRadius_m = 6356766.0;
 
 struct Layer {
   double base_m, lapse_K_per_m;
-  double temperature_K = 288.15, pressure_Pa = kStandardPressure_pa;  // at the base
+  double temperature_k = 288.15, pressure_pa = kStandardPressure_pa;  // at the base
 };
 
 double TemperatureIn(const Layer& layer, double above_base_m) {
-  return layer.temperature_K + layer.lapse_K_per_m * above_base_m;
+  return layer.temperature_k + layer.lapse_K_per_m * above_base_m;
 }
 
 double PressureIn(const Layer& layer, double above_base_m) {
   if (layer.lapse_K_per_m == 0.0) {
-    return layer.pressure_Pa * std::exp(-kHydrostatic_K_per_m * above_base_m / layer.temperature_K);
+    return layer.pressure_pa * std::exp(-kHydrostatic_K_per_m * above_base_m / layer.temperature_k);
   }
-  return layer.pressure_Pa * std::pow(layer.temperature_K / TemperatureIn(layer, above_base_m),
+  return layer.pressure_pa * std::pow(layer.temperature_k / TemperatureIn(layer, above_base_m),
                                       kHydrostatic_K_per_m / layer.lapse_K_per_m);
 }
 
@@ -45,8 +45,8 @@ Layers LayersFromTheGround() {
                  {84852.0, 0.0}}};
   for (std::size_t i = 1; i < layers.size(); ++i) {
     const double thickness_m = layers[i].base_m - layers[i - 1].base_m;
-    layers[i].temperature_K = TemperatureIn(layers[i - 1], thickness_m);
-    layers[i].pressure_Pa = PressureIn(layers[i - 1], thickness_m);
+    layers[i].temperature_k = TemperatureIn(layers[i - 1], thickness_m);
+    layers[i].pressure_pa = PressureIn(layers[i - 1], thickness_m);
   }
   return layers;
 }
@@ -60,10 +60,10 @@ StandardAir StandardAirAt(double height_m) {
       std::upper_bound(layers.begin() + 1, layers.end(), geopotential_m,
                        [](double height, const Layer& layer) { return height < layer.base_m; });
   const Layer& layer = *(above - 1);
-  const double temperature_K = TemperatureIn(layer, geopotential_m - layer.base_m);
-  const double gas = kGasOfAir_J_per_kg_K * temperature_K;
-  const double pressure_Pa = PressureIn(layer, geopotential_m - layer.base_m);
-  return {pressure_Pa / gas, std::sqrt(kHeatRatio * gas), temperature_K, pressure_Pa};
+  const double temperature_k = TemperatureIn(layer, geopotential_m - layer.base_m);
+  const double gas = kGasOfAir_J_per_kg_K * temperature_k;
+  const double pressure_pa = PressureIn(layer, geopotential_m - layer.base_m);
+  return {pressure_pa / gas, std::sqrt(kHeatRatio * gas), temperature_k, pressure_pa};
 }
 
 }  // namespace alpenglow::atmosphere

@@ -20,6 +20,18 @@ TEST(StandardAir, DensityAgreesWithThePublishedTable) {
   }
 }
 
+// The same table: geometric height [m], temperature [K], pressure [Pa].
+TEST(StandardAir, TemperatureAndPressureAgreeWithThePublishedTable) {
+  const double published[][3] = {{0.0, 288.150, 101325.0},
+                                 {5000.0, 255.676, 54048.0},
+                                 {10000.0, 223.252, 26500.0},
+                                 {20000.0, 216.650, 5529.3}};
+  for (const auto& [height_m, temperature_k, pressure_pa] : published) {
+    EXPECT_NEAR(StandardAirAt(height_m).temperature_k / temperature_k, 1.0, 1e-4) << height_m;
+    EXPECT_NEAR(StandardAirAt(height_m).pressure_pa / pressure_pa, 1.0, 1e-4) << height_m;
+  }
+}
+
 TEST(StandardAir, SpeedOfSoundAgreesWithPublishedValues) {
   EXPECT_NEAR(StandardAirAt(0.0).sound_m_per_s, 340.294, 0.01) << "as the standard prints it";
   EXPECT_NEAR(StandardAirAt(15000.0).sound_m_per_s, 295.07, 0.01);
