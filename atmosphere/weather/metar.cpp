@@ -61,7 +61,6 @@ std::optional<Section> SectionOf(std::string_view group) {
   if (IsLeastVisibility(group)) return Section::kLeastVisibility;
   if (IsColourState(group) || group == "WS" || IsSea(group)) return Section::kOther;
   if (IsWeather(group)) return group.starts_with("RE") ? Section::kOther : Section::kWeather;
-  if (group == "SNOCLO") return Section::kOther;
   if (IsRunway(group)) return Section::kRunway;
   const bool is_clear = IsOneOf(group, {"NSC", "NCD", "SKC", "CLR"});
   if (is_clear || IsCloud(group) || IsObscuredSky(group)) return Section::kClouds;
@@ -237,7 +236,7 @@ class ReportReader {
       report_.states_clouds = true;
     } else if (!IsCloud(group)) {
       if (report_.states_clouds)
-        RefuseGroup(group, fmt::format("it says that there are no clouds, beside other groups"));
+        RefuseGroup(group, "it says that there are no clouds, and a group before it gives clouds");
       clear_ = group;
       report_.states_clouds = true;
     } else if (const std::optional<ReportedCloud> cloud = CloudFromGroup(group)) {

@@ -24,8 +24,8 @@ struct MetarReport {
   ReportTime time;
   std::optional<ReportedWind> wind;
   std::optional<ReportedVisibility> visibility;
-  std::string fog;  // the group of fog at the station, "FG" or "FZFG"; empty without
-  /// The report tells which clouds there are, or that there are none (CAVOK, NSC, NCD, SKC, CLR).
+  std::string fog;  // the group of fog at the station, "FG" or "FZFG"; empty without fog
+  /// The report states clouds or their absence (CAVOK, NSC, NCD, SKC, CLR).
   bool states_clouds = false;
   std::vector<ReportedCloud> clouds;  // of known amount and height, in the order of the report
   std::optional<ObscuredSky> obscured;

@@ -28,6 +28,8 @@ constexpr EnumNames kAmounts{{std::pair{CloudAmount::kFew, "FEW"},
 struct WeatherWord {
   std::string_view code, text;
 };
+constexpr std::array<WeatherWord, 4> kPrefixes{
+    {{"-", "light"}, {"+", "heavy"}, {"VC", "in the vicinity"}, {"RE", "recent"}}};
 constexpr std::array<WeatherWord, 8> kDescriptors{{{"MI", "shallow"},
                                                    {"BC", "in patches"},
                                                    {"PR", "on one side"},
@@ -60,10 +62,6 @@ bool AcceptWord(std::string_view& text, std::string_view word) {
   return true;
 }
 
-bool EndsInUnitOfWind(std::string_view group) {
-  return group.ends_with("KT") || group.ends_with("MPS") || group.ends_with("KMH");
-}
-
 bool IsUnknown(std::string_view text) {
   return !text.empty() && text.find_first_not_of('/') == std::string_view::npos;
 }
@@ -77,9 +75,27 @@ std::optional<int> Digits(TextCursor& cursor, std::size_t count) {
   return ParseWholeNumber(digits);
 }
 
+constexpr double kSecondsPerHour = 3600.0;
+
+struct WindUnit {
+  std::string_view code;
+  double m_per_s;
+};
+constexpr std::array<WindUnit, 3> kWindUnits{{{"KT", kMetresPerNauticalMile / kSecondsPerHour},
+                                              {"MPS", 1.0},
+                                              {"KMH", kMetresPerKilometre / kSecondsPerHour}}};
+
+/// Returns the unit in which a group ends, or null.
+const WindUnit* WindUnitOf(std::string_view group) {
+  const auto found = std::find_if(kWindUnits.begin(), kWindUnits.end(),
+                                  [&](const WindUnit& unit) { return group.ends_with(unit.code); });
+  return found == kWindUnits.end() ? nullptr : &*found;
+}
+
 /// A wind as it is written, in its own unit.
 struct WrittenWind {
-  std::string_view direction, speed, gusts, unit;
+  std::string_view direction, speed, gusts;
+  WindUnit unit;
 };
 
 constexpr char kWindForm[] =
@@ -87,26 +103,16 @@ constexpr char kWindForm[] =
     "gusts, and KT, MPS or KMH";
 
 WrittenWind SplitWind(std::string_view group) {
-  WrittenWind wind;
-  for (const std::string_view unit : {"KT", "MPS", "KMH"}) {
-    if (group.ends_with(unit)) wind.unit = unit;
-  }
-  std::string_view values = group.substr(0, group.size() - wind.unit.size());
-  wind.direction = values.substr(0, 3);
-  values.remove_prefix(wind.direction.size());
-  const std::size_t gusts = values.find('G');
-  wind.speed = values.substr(0, gusts);
-  if (gusts != std::string_view::npos) wind.gusts = values.substr(gusts + 1);
-  const bool has_gusts = gusts != std::string_view::npos;
-  if (wind.unit.empty() || wind.direction.size() < 3 || (has_gusts && wind.gusts.empty()))
-    RefuseGroup(group, kWindForm);
-  return wind;
-}
-
-double UnitOfWind_m_per_s(std::string_view unit) {
-  constexpr double kSecondsPerHour = 3600.0;
-  if (unit == "KT") return kMetresPerNauticalMile / kSecondsPerHour;
-  return unit == "KMH" ? kMetresPerKilometre / kSecondsPerHour : 1.0;
+  const WindUnit* unit = WindUnitOf(group);
+  if (unit == nullptr) RefuseGroup(group, kWindForm);
+  std::string_view values = group.substr(0, group.size() - unit->code.size());
+  const std::string_view direction = values.substr(0, 3);
+  values.remove_prefix(direction.size());
+  const std::size_t mark = values.find('G');
+  const bool has_gusts = mark != std::string_view::npos;
+  const std::string_view gusts = has_gusts ? values.substr(mark + 1) : "";
+  if (direction.size() < 3 || (has_gusts && gusts.empty())) RefuseGroup(group, kWindForm);
+  return {direction, values.substr(0, mark), gusts, *unit};
 }
 
 /// Returns a speed in the unit of the group; "P99" is more than the code holds.
@@ -199,22 +205,15 @@ std::optional<std::vector<std::string_view>> WordsOfWeather(std::string_view tex
   return words;
 }
 
-/// The sign or prefix of a weather group.
-struct WeatherPrefix {
-  std::string_view code, text;
-};
-constexpr std::array<WeatherPrefix, 4> kPrefixes{
-    {{"-", "light"}, {"+", "heavy"}, {"VC", "in the vicinity"}, {"RE", "recent"}}};
-
-const WeatherPrefix* PrefixOf(std::string_view group) {
+const WeatherWord* PrefixOf(std::string_view group) {
   const auto found =
       std::find_if(kPrefixes.begin(), kPrefixes.end(),
-                   [&](const WeatherPrefix& prefix) { return group.starts_with(prefix.code); });
+                   [&](const WeatherWord& prefix) { return group.starts_with(prefix.code); });
   return found == kPrefixes.end() ? nullptr : &*found;
 }
 
 std::string_view WithoutPrefix(std::string_view group) {
-  const WeatherPrefix* prefix = PrefixOf(group);
+  const WeatherWord* prefix = PrefixOf(group);
   return prefix == nullptr ? group : group.substr(prefix->code.size());
 }
 
@@ -225,7 +224,7 @@ Convection ConvectionOf(std::string_view text, std::string_view group) {
   RefuseGroup(group, "after the height, a layer of clouds has CB, TCU or nothing");
 }
 
-/// Returns a height in hundreds of feet [m], or nothing for "///"; skips both.
+/// Skips a height in hundreds of feet, which is returned in metres, or "///".
 std::optional<double> HeightFrom(std::string_view& text, std::string_view group) {
   if (AcceptWord(text, "///")) return std::nullopt;
   TextCursor cursor(text);
@@ -255,7 +254,7 @@ void RefuseGroup(std::string_view group, std::string_view reason) {
   throw InputError(fmt::format("group \"{}\": {}", Printable(group), reason));
 }
 
-bool IsWind(std::string_view group) { return EndsInUnitOfWind(group); }
+bool IsWind(std::string_view group) { return WindUnitOf(group) != nullptr; }
 
 bool IsWindRange(std::string_view group) {
   return group.size() == 7 && group[3] == 'V' &&
@@ -283,9 +282,9 @@ bool IsRunway(std::string_view group) {
 
 bool IsWeather(std::string_view group) {
   if (group == "//" || group == "NSW") return true;
-  const WeatherPrefix* prefix = PrefixOf(group);
+  const WeatherWord* prefix = PrefixOf(group);
   const bool has_sign = prefix != nullptr && prefix->code.size() == 1;
-  return has_sign || WordsOfWeather(group) || WordsOfWeather(WithoutPrefix(group)) ||
+  return has_sign || WordsOfWeather(WithoutPrefix(group)) ||
          (group.starts_with("RE") && IsUnknown(group.substr(2)));
 }
 
@@ -328,7 +327,7 @@ std::optional<ReportedWind> WindFromGroup(std::string_view group) {
     if (gusts <= speed)
       RefuseGroup(group, fmt::format("gusts of {} are not above the wind of {}", gusts, speed));
   }
-  const double speed_m_per_s = speed * UnitOfWind_m_per_s(wind.unit);
+  const double speed_m_per_s = speed * wind.unit.m_per_s;
   if (speed_m_per_s > kFastestWind_m_per_s) {
     RefuseGroup(group, fmt::format("the wind has {:.0f} m/s; it must have at most {:.0f} m/s",
                                    speed_m_per_s, kFastestWind_m_per_s));
@@ -340,7 +339,7 @@ std::optional<ReportedWind> WindFromGroup(std::string_view group) {
 std::string GustsOfWind(std::string_view group) {
   const WrittenWind wind = SplitWind(group);
   if (wind.gusts.empty() || IsUnknown(wind.gusts)) return "";
-  return fmt::format("G{}{}", wind.gusts, wind.unit);
+  return fmt::format("G{}{}", wind.gusts, wind.unit.code);
 }
 
 std::optional<ReportedVisibility> VisibilityFromGroup(std::string_view group) {
@@ -362,9 +361,8 @@ std::optional<ReportedVisibility> VisibilityFromGroup(std::string_view group) {
 WeatherGroup WeatherFromGroup(std::string_view group) {
   if (group == "//" || group == "RE//") return {.in_words = "weather not observed"};
   if (group == "NSW") return {.in_words = "no significant weather"};
-  // PR and RE are also the first letters of no phenomenon, so that prefixes are taken first.
-  const WeatherPrefix* prefix = WordsOfWeather(group) ? nullptr : PrefixOf(group);
-  const std::string_view codes = prefix == nullptr ? group : WithoutPrefix(group);
+  const WeatherWord* prefix = PrefixOf(group);
+  const std::string_view codes = WithoutPrefix(group);
   const auto words = WordsOfWeather(codes);
   if (!words) {
     RefuseGroup(group,

@@ -67,8 +67,9 @@ struct WeatherGroup {
   std::string in_words;  // "light: showers, rain"
 };
 
-/// Visibilities and winds of the code are limited to these values. No report has had more wind.
+/// Shorter visibilities are read as at most this one, the step of the code.
 inline constexpr double kLeastVisibility_m = 50.0;
+/// Greater values are refused.
 inline constexpr double kHighestConvection_m = 6000.0;  // of the bases of CB and TCU
 inline constexpr double kFastestWind_m_per_s = 83.0;
 

@@ -17,10 +17,12 @@ constexpr double kZeroCelsius_k = 273.15;
 
 /// Returns the pressure at a station whose altimeters show its height with this setting (QNH).
 double StationPressure_pa(double qnh_pa, double station_m) {
-  // The exponent is R_d L / g, and the slope L p0^exponent / T0 in the units of this formula.
-  constexpr double kExponent = 0.190263, kLapse_k_per_m = 0.0065, kSea_k = 288.15;
-  const double slope = std::pow(kStandardPressure_pa, kExponent) * kLapse_k_per_m / kSea_k;
-  return std::pow(std::pow(qnh_pa, kExponent) - slope * station_m, 1.0 / kExponent);
+  // In the standard atmosphere p^(R_d L / g) falls linearly with height, with the lapse rate L.
+  constexpr double kLapse_k_per_m = 0.0065;
+  constexpr double kExponent = kGasOfAir_J_per_kg_K * kLapse_k_per_m / kStandardGravity_m_per_s2;
+  const double standard = std::pow(StandardAirAt(station_m).pressure_pa, kExponent);
+  const double drop = std::pow(kStandardPressure_pa, kExponent) - standard;
+  return std::pow(std::pow(qnh_pa, kExponent) - drop, 1.0 / kExponent);
 }
 
 double VapourPressure_pa(double dew_point_c) {

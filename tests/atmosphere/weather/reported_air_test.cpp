@@ -45,8 +45,8 @@ TEST(ReportedAir, PressureAtTheStationIsThatOfAltimeters) {
   }
 }
 
-// Table of the International Civil Aviation Organization for moist air is not used: the vapour pressure
-// over water at 20 degrees Celsius is 23.39 hPa (IAPWS-95), and density follows from Dalton's law.
+// The vapour pressure over water at 20 degrees Celsius is 23.39 hPa (IAPWS-95), and the density follows
+// from Dalton's law.
 TEST(ReportedAir, DensityIsThatOfDryAirAndVapour) {
   const StationAir air = AirAtStation(Report("30/20 Q1000"), 0.0);
   const double vapour_pa = 2339.0, temperature_k = 303.15;
