@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "lut/cli/command_line.h"
-#include "lut/cli/metar_option.h"
 #include "lut/cli/output_file.h"
 #include "lut/evaluate/eval.h"
 #include "lut/image/look_options.h"
@@ -21,9 +20,9 @@
 #include "renderer/camera/track.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
-#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/scene/scene_weather.h"
+#include "renderer/scene/weather_options.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/series.h"
 
@@ -195,17 +194,7 @@ inline void AddAirOptions(CLI::App& app, SkyseriesOptions& options) {
                  "bruneton2017");
   AddWithoutFile(app, "--bortle", options.scene.bortle,
                  "Light pollution of the night sky: class 1 (dark) to 9 (city)");
-  AddMetarOption(app, options.weather.metar);
-  app.add_option("--station-height", options.weather.station_height_m, kStationHeightHelp)
-      ->check(InRange(kStationHeights_m.first, kStationHeights_m.second))
-      ->needs("--metar");
-  app.add_option(
-         "--clouds", options.clouds,
-         "Clouds, instead of those of the scene or of --metar: none, fair (cumulus 0.25), broken "
-         "(stratocumulus 0.75), high (cirrus 0.5), or layers separated by commas, each a "
-         "genus and its cover, 0 to 1: \"cumulus 0.3, cirrus 0.5\". Genera are cumulus (at "
-         "most 0.8), stratocumulus, altocumulus and cirrus")
-      ->check(ReadableBy([](const std::string& text) { (void)CloudsFromText(text); }));
+  AddWeatherOptions(app, options.weather, options.clouds);
 }
 
 inline void AddDisplayOptions(CLI::App& app, PictureOptionTexts& texts) {

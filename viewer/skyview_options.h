@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "lut/cli/command_line.h"
-#include "lut/cli/metar_option.h"
 #include "lut/image/look_options.h"
 #include "lut/image/picture_format.h"
-#include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/scene/scene_weather.h"
+#include "renderer/scene/weather_options.h"
 #include "viewer/input/action.h"
 #include "viewer/layer.h"
 
@@ -108,15 +107,7 @@ inline void AddPlaceOptions(CLI::App& app, SkyviewOptions& options) {
 
 inline void AddAirOptions(CLI::App& app, SkyviewOptions& options) {
   BeginGroup(app, kAirGroup);
-  AddMetarOption(app, options.weather.metar);
-  app.add_option("--station-height", options.weather.station_height_m, kStationHeightHelp)
-      ->check(InRange(kStationHeights_m.first, kStationHeights_m.second))
-      ->needs("--metar");
-  app.add_option("--clouds", options.clouds,
-                 "Clouds, instead of those of the scene: none, fair (cumulus 0.25), broken "
-                 "(stratocumulus 0.75), high (cirrus 0.5), overcast (stratus), or layers separated "
-                 "by commas, each a genus and its cover: \"cumulus 0.3, cirrus 0.5\"")
-      ->check(ReadableBy([](const std::string& text) { (void)CloudsFromText(text); }));
+  AddWeatherOptions(app, options.weather, options.clouds);
 }
 
 inline void AddPictureOptions(CLI::App& app, SkyviewOptions& options) {

@@ -12,8 +12,8 @@
 
 namespace alpenglow::lut {
 
-/// Returns the groups of a report that do not concern the air alone, or have no effect at all, with
-/// their meaning: "FEW040 (clouds)".
+/// Returns the groups of a report that have no effect on the air, with their meaning: "FEW040
+/// (clouds)".
 [[nodiscard]] std::vector<std::string> GroupsBesideAir(const MetarReport& report);
 
 /// Returns the medium in the air of a report (InReportedAir) whose station is at altitude 0, and

@@ -114,9 +114,9 @@ struct GroundCover {
   double roughness = 0.5;                       // of kOrenNayar and kBlinnPhong, see their classes
   double reflectance = 0.04;                    // of the coat at normal incidence
   double wind_m_per_s = 5.0;                    // over water
-  double grain_diameter_m = 5e-4;               // of snow
-  double wetness = 0.0;                         // of kMountain to kOrenNayar, see WetAlbedo
-  std::optional<double> sea_level_m;            // ground at or below this level is water
+  double grain_diameter_m = 5e-4;     // of snow
+  double wetness = 0.0;               // of kMountain to kOrenNayar, see WetAlbedo
+  std::optional<double> sea_level_m;  // ground at or below this level is water
 };
 
 /// A lamp.
@@ -214,7 +214,7 @@ struct SceneCloud {
 struct SceneWeather {
   std::optional<std::string> metar;        // a report, see ReadMetar
   std::optional<double> station_height_m;  // of its station, above the ellipsoid
-  std::vector<std::string> notes;  // what of the report has no effect, and what contradicts itself
+  std::vector<std::string> notes;          // see NotesOnReport
 };
 
 struct Scene {

@@ -99,6 +99,17 @@ std::optional<double> CloudDatum_m(const Scene& scene, std::optional<double> sta
   return is_made_up ? scene.weather.station_height_m : station_m;
 }
 
+/// Returns clouds whose names begin with the origin of their report; refuses bases above all fields.
+std::vector<SceneCloud> NamedClouds(std::vector<SceneCloud> clouds, const std::string& origin) {
+  const auto [lowest_m, highest_m] = CloudRanges::kBase_m;
+  for (SceneCloud& cloud : clouds) {
+    RequireInRange(cloud.options.base_altitude_m, lowest_m, highest_m,
+                   fmt::format("the base of {} above the ellipsoid", cloud.name));
+    cloud.name = fmt::format("{}: {}", origin, cloud.name);
+  }
+  return clouds;
+}
+
 MediumLayer FogOf(const MetarReport& report, const Medium& air, std::optional<double> station_m) {
   constexpr double kScaleHeight_m = 50.0, kDroplets_um = 15.0;
   const double of_air_per_m =
@@ -123,22 +134,20 @@ std::optional<std::string> ContradictionOf(const ReportedCloud& cloud, const Met
     return std::nullopt;
   return fmt::format(
       "{} has its base at {:.0f} m, and temperature {} with dew point {} forms clouds of rising "
-      "air "
-      "at {:.0f} m; the base is kept",
+      "air at {:.0f} m; the base is kept",
       cloud.group, cloud.height_m, *report.temperature.air_c, *report.temperature.dew_point_c,
       *level_m);
 }
 
-/// Returns what of a cloud group fields of clouds do not have.
+/// Returns a message if clouds of a group are drawn only in part.
 std::optional<std::string> LimitOf(const ReportedCloud& cloud) {
-  std::string limit;
+  std::vector<std::string> limits;
   if (cloud.convection == Convection::kCumulonimbus)
-    limit = fmt::format("is drawn as cumulus {:.0f} m deep, without anvil", kDepthOfCumulonimbus_m);
+    limits.push_back(fmt::format("as cumulus {:.0f} m deep without anvil", kDepthOfCumulonimbus_m));
   if (cloud.convection != Convection::kUnstated && cloud.amount == CloudAmount::kOvercast)
-    limit +=
-        fmt::format("{} with a cover of {}", limit.empty() ? "is drawn" : "", kMostCumulusCover);
-  if (limit.empty()) return std::nullopt;
-  return cloud.group + " " + limit;
+    limits.push_back(fmt::format("with a cover of {}", kMostCumulusCover));
+  if (limits.empty()) return std::nullopt;
+  return fmt::format("{} is drawn {}", cloud.group, fmt::join(limits, ", "));
 }
 
 /// Returns the airport with a code, or null.
@@ -154,7 +163,7 @@ std::vector<std::string> NotesOnFog(const MetarReport& report) {
   if (report.fog.empty()) return {};
   if (!report.visibility) return {fmt::format("{} without a visibility is not drawn", report.fog)};
   if (report.visibility->distance_m < kVisibilityOfFog_m) return {};
-  return {fmt::format("{} with a visibility of {:.0f} m; fog has less than {:.0f} m", report.fog,
+  return {fmt::format("{} has a visibility of {:.0f} m; fog has less than {:.0f} m", report.fog,
                       report.visibility->distance_m, kVisibilityOfFog_m)};
 }
 
@@ -173,7 +182,8 @@ std::vector<SceneCloud> CloudsOfReport(const MetarReport& report, std::optional<
     SceneCloud cloud = LayerOf(layers[i], report);
     if (i + 1 < layers.size() && layers[i].convection == Convection::kUnstated)
       cloud.options.depth_m = DepthBelow(cloud, layers[i + 1]);
-    cloud.options.base_altitude_m += std::max(station_m.value_or(0.0), 0.0);
+    cloud.options.base_altitude_m = std::max(
+        cloud.options.base_altitude_m + station_m.value_or(0.0), CloudRanges::kBase_m.first);
     cloud.options.seed = static_cast<std::uint32_t>(i) + 1U;
     cloud.is_over_ground = !station_m;
     clouds.push_back(std::move(cloud));
@@ -214,15 +224,7 @@ Scene InWeather(Scene scene, const std::string& origin) {
   scene.medium = InReportedAir(std::move(scene.medium), report, station_m.value_or(0.0));
   const std::optional<double> datum_m = CloudDatum_m(scene, station_m);
   if (IsInFog(report) && report.visibility) scene.layers = {FogOf(report, scene.medium, datum_m)};
-  if (report.states_clouds) {
-    scene.clouds = CloudsOfReport(report, datum_m);
-    for (SceneCloud& cloud : scene.clouds) {
-      const auto [lowest_m, highest_m] = CloudRanges::kBase_m;
-      RequireInRange(cloud.options.base_altitude_m, lowest_m, highest_m,
-                     fmt::format("the base of {} above the ellipsoid", cloud.name));
-      cloud.name = fmt::format("{}: {}", origin, cloud.name);
-    }
-  }
+  if (report.states_clouds) scene.clouds = NamedClouds(CloudsOfReport(report, datum_m), origin);
   if (!scene.time) scene.time = TimeOfReport(report);
   scene.weather.metar = report.text;
   for (const std::string& note : notes)

@@ -40,17 +40,19 @@ inline constexpr std::pair kStationHeights_m{-500.0, 6000.0};
 [[nodiscard]] std::optional<double> StationHeight_m(const Scene& scene, const MetarReport& report);
 
 /// Returns the layers of a report, the lowest first. Without a height of the station, bases are
-/// above the ground at the place of the scene.
+/// above the ground at the place of the scene. Bases below the ellipsoid, of stations below it, are
+/// raised to it.
 [[nodiscard]] std::vector<SceneCloud> CloudsOfReport(const MetarReport& report,
                                                      std::optional<double> station_m);
 
-/// Returns what of the report has no effect on the scene and what contradicts itself, each in one line.
+/// Returns messages: one for all groups without effect on the scene, and one for each contradiction
+/// and for each cloud group that is drawn only in part.
 [[nodiscard]] std::vector<std::string> NotesOnReport(const MetarReport& report);
 
 /// Returns the time of a report: its day and time in June 2026, or in July for the 31st.
 [[nodiscard]] UtcTime TimeOfReport(const MetarReport& report);
 
-/// Returns the scene in its weather (Scene::weather); a scene without a report as it is. Clouds and
+/// Returns the scene in its weather (Scene::weather). A scene without a report is unchanged. Clouds and
 /// fog are above the station (StationHeight_m). If its height is not known, and over the built-in
 /// range, they are above the ground at the place of the scene, unless the scene gives a height. Clouds
 /// replace those of the scene if the report states clouds, fog replaces its fog if the station is in fog, and

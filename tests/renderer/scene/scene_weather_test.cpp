@@ -127,6 +127,12 @@ TEST(SceneWeather, BasesAreAboveTheStation) {
   EXPECT_THAT(given.weather.notes, IsEmpty());
 }
 
+TEST(SceneWeather, BasesOfStationsBelowTheEllipsoidAreLower) {
+  const std::vector<SceneCloud> clouds = CloudsOfReport(Report("FEW000 SCT040"), -400.0);
+  EXPECT_EQ(clouds[0].options.base_altitude_m, 0.0) << "fields begin at the ellipsoid";
+  EXPECT_NEAR(clouds[1].options.base_altitude_m, 1219.2 - 400.0, 1e-9);
+}
+
 TEST(SceneWeather, CloudsOverTheBuiltInRangeAreAboveItsGround) {
   const std::string file = "[place]\nlatitude = 47.4\nlongitude = 8.5\n[weather]\nmetar = \"" +
                            kAtZurich + "0500 FG SCT040\"\n";
@@ -164,14 +170,14 @@ TEST(SceneWeather, ContradictionsAreNamedWithBothValues) {
   EXPECT_THAT(NotesOnReport(Report("SCT010CB 30/10")), Not(IsEmpty()));
   EXPECT_THAT(NotesOnReport(Report("BKN010 OVC120 30/10")), IsEmpty()) << "not of rising air";
   EXPECT_THAT(NotesOnReport(Report("5000 FG")),
-              ElementsAre("FG with a visibility of 5000 m; fog has less than 1000 m"));
+              ElementsAre("FG has a visibility of 5000 m; fog has less than 1000 m"));
   EXPECT_THAT(NotesOnReport(Report("FG")), ElementsAre("FG without a visibility is not drawn"));
 }
 
 TEST(SceneWeather, GroupsWithoutEffectAreNamedInOneLine) {
   EXPECT_THAT(NotesOnReport(Report("-SHRA OVC030CB NOSIG")),
               ElementsAre("not modelled: -SHRA (light: showers, rain), NOSIG (trend)",
-                          "OVC030CB is drawn as cumulus 4000 m deep, without anvil with a cover of "
+                          "OVC030CB is drawn as cumulus 4000 m deep without anvil, with a cover of "
                           "0.8"));
 }
 
