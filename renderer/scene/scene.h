@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
@@ -99,6 +100,9 @@ struct TerrainSource {
   }
 };
 
+inline constexpr double kUsualWind_m_per_s = 5.0;
+inline constexpr std::pair kWindsOverWater_m_per_s{0.0, 20.0};
+
 /// Material of the ground and its reflectance model (reflectance.h).
 struct GroundCover {
   enum class Kind {
@@ -113,7 +117,8 @@ struct GroundCover {
   std::array<double, 3> albedo{0.2, 0.2, 0.2};  // linear sRGB, of kLambert to kBlinnPhong
   double roughness = 0.5;                       // of kOrenNayar and kBlinnPhong, see their classes
   double reflectance = 0.04;                    // of the coat at normal incidence
-  double wind_m_per_s = 5.0;                    // over water
+  /// Wind over water, see Water; empty: that of the scene's report, or kUsualWind_m_per_s.
+  std::optional<double> wind_m_per_s;
   double grain_diameter_m = 5e-4;     // of snow
   double wetness = 0.0;               // of kMountain to kOrenNayar, see WetAlbedo
   std::optional<double> sea_level_m;  // ground at or below this level is water

@@ -226,6 +226,10 @@ Scene InWeather(Scene scene, const std::string& origin) {
   if (IsInFog(report) && report.visibility) scene.layers = {FogOf(report, scene.medium, datum_m)};
   if (report.states_clouds) scene.clouds = NamedClouds(CloudsOfReport(report, datum_m), origin);
   if (!scene.time) scene.time = TimeOfReport(report);
+  if (report.wind && !scene.ground.wind_m_per_s) {
+    scene.ground.wind_m_per_s =
+        std::min(report.wind->speed_m_per_s, kWindsOverWater_m_per_s.second);
+  }
   scene.weather.metar = report.text;
   for (const std::string& note : notes)
     scene.weather.notes.push_back(fmt::format("{}: {}", origin, note));

@@ -15,7 +15,8 @@
 //
 // Layers drift with the reported wind, increased by the power law (h / 10 m)^(1/7) up to 600 m above
 // the station (Peterson and Hennessey 1978, J. Appl. Meteor. 17, 390); calm and variable winds move nothing.
-// Without a wind group, the wind is that of the genus.
+// Without a wind group, the wind is that of the genus. Water has the waves of the reported speed, also
+// of variable winds, at most those of 20 m/s.
 //
 // Fog has droplets of 15 micrometres, the reported visibility at the station, and a scale height of 50 m,
 // through which clouds and sun can be seen in visibilities above about 100 m.
@@ -56,7 +57,7 @@ inline constexpr std::pair kStationHeights_m{-500.0, 6000.0};
 /// fog are above the station (StationHeight_m). If its height is not known, and over the built-in
 /// range, they are above the ground at the place of the scene, unless the scene gives a height. Clouds
 /// replace those of the scene if the report states clouds, fog replaces its fog if the station is in fog, and
-/// the time is set if the scene has none. Throws InputError as ReadMetar and InReportedAir do.
+/// the time and the wind over water are set if the scene has none. Throws InputError as ReadMetar and InReportedAir do.
 /// @param origin  where the report was given, "--metar"; the notes and the names of the layers begin with it.
 [[nodiscard]] Scene InWeather(Scene scene, const std::string& origin);
 

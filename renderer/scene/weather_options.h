@@ -19,8 +19,9 @@ inline void AddWeatherOptions(CLI::App& app, SceneWeather& weather,
   AddMetarOption(
       app, weather.metar,
       "Weather of a METAR or SPECI: \"LSZH 211350Z 24008KT 9999 FEW040 22/12 Q1018\". Visibility "
-      "becomes haze or fog; cloud groups and wind become clouds; temperature, dew point and "
-      "pressure set the density of the air. A warning names groups without effect");
+      "becomes haze or fog; cloud groups and wind become clouds; the wind roughens water; "
+      "temperature, dew point and pressure set the density of the air. A warning names groups "
+      "without effect");
   app.add_option("--station-height", weather.station_height_m,
                  "Height of the station of --metar in metres above the ellipsoid, -500 to 6000 "
                  "(default: that of a named airport, or 0)")

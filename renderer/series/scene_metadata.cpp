@@ -225,6 +225,7 @@ Metadata RecordOf(const TomlFields<GroundCover>& fields, const GroundCover& grou
   Metadata values = ValuesOf(fields, ground);
   values["cover"] = fmt::format("{}", static_cast<int>(ground.kind));
   values.erase("grain_diameter_mm");
+  values["wind_m_per_s"] = fmt::format("{}", ground.wind_m_per_s.value_or(kUsualWind_m_per_s));
   values["grain_diameter_m"] = fmt::format("{}", ground.grain_diameter_m);
   return {{"alpenglow.ground_hash", Fingerprint(values)}};
 }

@@ -280,7 +280,7 @@ GroundMaterial::GroundMaterial(const GroundCover& cover, std::shared_ptr<const C
       albedo_(Wetted(bands_of_colour_.Albedo(cover.albedo), cover.wetness)),
       rough_(cover.kind == Kind::kOrenNayar ? cover.roughness : 0.0),
       glossy_(cover.kind == Kind::kBlinnPhong ? cover.roughness : 1.0, cover.reflectance),
-      water_(cover.wind_m_per_s, wavelengths_nm),
+      water_(cover.wind_m_per_s.value_or(kUsualWind_m_per_s), wavelengths_nm),
       snow_(cover.grain_diameter_m, wavelengths_nm) {}
 
 bool GroundMaterial::HasGloss() const { return cover_.kind == Kind::kBlinnPhong || HasWater(); }

@@ -76,7 +76,7 @@ TEST(Scene, TheManualsSceneHasTheDefaults) {
   EXPECT_EQ(manual.medium, bare.medium);
   EXPECT_EQ(manual.terrain.voids, bare.terrain.voids);
   EXPECT_EQ(manual.ground.kind, bare.ground.kind);
-  EXPECT_EQ(manual.ground.wind_m_per_s, bare.ground.wind_m_per_s);
+  EXPECT_EQ(manual.ground.wind_m_per_s, kUsualWind_m_per_s);
   EXPECT_EQ(manual.lights.size() + manual.volumes.size(), 2U);
   ASSERT_EQ(manual.objects.size(), 1U);
   EXPECT_EQ(manual.objects[0].radius_m, SceneObject{}.radius_m);

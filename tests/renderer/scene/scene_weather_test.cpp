@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -109,6 +110,19 @@ TEST(SceneWeather, CloudsDriftWithTheReportedWind) {
   EXPECT_EQ(CloudsOfReport(Report("FEW040"), {}).front().options.wind_m_per_s,
             DefaultCloudOptions(CloudGenus::kCumulus).wind_m_per_s)
       << "without a wind";
+}
+
+TEST(SceneWeather, WaterHasTheReportedWindUnlessTheSceneGivesOne) {
+  const auto wind_m_per_s = [](const std::string& groups, const std::string& ground = "") {
+    const Scene scene = Reported(groups, kAtZurich, "[ground]\ncover = \"water\"\n" + ground);
+    return scene.ground.wind_m_per_s;
+  };
+  EXPECT_EQ(wind_m_per_s("24012MPS"), 12.0);
+  EXPECT_NEAR(*wind_m_per_s("VRB04KT"), 4.0 * 0.514444, 1e-5) << "waves need no direction";
+  EXPECT_EQ(wind_m_per_s("00000KT"), 0.0);
+  EXPECT_EQ(wind_m_per_s("24060KT"), 20.0) << "the most that water has";
+  EXPECT_EQ(wind_m_per_s("/////KT CAVOK"), std::nullopt) << "not observed";
+  EXPECT_EQ(wind_m_per_s("24012MPS", "wind_m_per_s = 3\n"), 3.0);
 }
 
 TEST(SceneWeather, BasesAreAboveTheStation) {

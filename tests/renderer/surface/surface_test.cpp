@@ -276,6 +276,17 @@ MeanWaves WavesSeen(double variance, double footprint_m, double cosine) {
   return mean;
 }
 
+TEST(GroundMaterial, WaterHasTheWavesOfItsWind) {
+  const std::vector<double> wavelengths_nm = WavelengthSet(4);
+  GroundCover cover;
+  const auto variance = [&] {
+    return GroundMaterial(cover, nullptr, wavelengths_nm).water().slope_variance();
+  };
+  EXPECT_DOUBLE_EQ(variance(), 0.0286) << "0.003 + 0.00512 W at 5 m/s, without a wind";
+  cover.wind_m_per_s = 12.0;
+  EXPECT_DOUBLE_EQ(variance(), 0.06444);
+}
+
 TEST(Waves, SlopesAreThoseOfTheWindAtEveryDistance) {
   for (const double footprint_m : {0.005, 0.1, 1.0, 5.0}) {
     const MeanWaves seen = WavesSeen(kBreeze, footprint_m, 1.0);
