@@ -184,7 +184,7 @@ AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const Air& air
   return left;
 }
 
-/// Returns the transmittance of media over a distance.
+/// Returns the transmittance of media over a distance; within pieces the optical depth is linear.
 Spectrum LeftByMedia(const std::vector<MarchedPiece>& pieces, double distance_m,
                      std::size_t bands) {
   Spectrum left(bands);
@@ -193,8 +193,9 @@ Spectrum LeftByMedia(const std::vector<MarchedPiece>& pieces, double distance_m,
     if (piece.begin_m >= distance_m) break;
     const auto share = static_cast<float>(
         std::min((distance_m - piece.begin_m) / (piece.end_m - piece.begin_m), 1.0));
-    for (std::size_t band = 0; band < bands; ++band)
-      left[band] = std::lerp(left[band], piece.transmittance[band], share);
+    for (std::size_t band = 0; band < bands; ++band) {
+      if (left[band] > 0.0F) left[band] *= std::pow(piece.transmittance[band] / left[band], share);
+    }
   }
   return left;
 }
@@ -209,26 +210,24 @@ Spectrum NarrowLeft(const MarchedLight& marched) {
   return left;
 }
 
-/// Returns the air up to a distance, behind media.
-AirAlongRay AirUpto(double distance_m, const std::vector<MarchedPiece>& pieces, const AirTo& air) {
-  const AirAlongRay reached = air(distance_m);
-  if (pieces.empty()) return reached;
-  AirAlongRay left = ThroughMedia(
-      pieces, [&](double m) { return air(std::min(m, distance_m)); }, reached);
-  left.transmittance =
-      LeftByMedia(pieces, distance_m, left.transmittance.size()) * left.transmittance;
+/// Returns air in media and behind them.
+/// @param whole  the air alone, up to the end of the ray.
+AirAlongRay BehindMedia(const MarchedLight& media, const AirTo& air, const AirAlongRay& whole) {
+  AirAlongRay left = ThroughMedia(media.pieces, air, whole);
+  left.transmittance = left.transmittance * media.transmittance;
   return left;
 }
 
 /// Puts the air behind clouds. Returns the light of the clouds, per unit solar irradiance [1/sr].
-/// @param pieces  media along the ray. @param lit  the whole air, behind media.
-Spectrum AddClouds(const CloudsOnRay& clouds, const std::vector<MarchedPiece>& pieces,
+/// @param media  up to each screen; empty: there are none. @param lit  the whole air, behind media.
+Spectrum AddClouds(const CloudsOnRay& clouds, const std::vector<MarchedLight>& media,
                    const AirTo& air, AirAlongRay& lit) {
   Spectrum light(lit.inscatter.size());
   std::vector<AirAlongRay> reached;
   float left = 1.0F;
   for (const CloudScreen& screen : clouds.screens) {
-    reached.push_back(AirUpto(screen.distance_m, pieces, air));
+    const AirAlongRay upto = air(screen.distance_m);
+    reached.push_back(media.empty() ? upto : BehindMedia(media[reached.size()], air, upto));
     light = light + left * (reached.back().transmittance * screen.radiance);
     left *= screen.transmittance;
   }
@@ -256,20 +255,21 @@ void AddSource(const FrameContext& frame, const FrameLight& source, bool is_firs
   MarchedLight marched;
   if (source.media) {
     marched = source.media->Along(eye, through.direction, through.length_m, air.sunlit());
-    lit = ThroughMedia(marched.pieces, air, lit);
-    lit.transmittance = lit.transmittance * marched.transmittance;
+    lit = BehindMedia(marched, air, lit);
     if (is_first) rays.narrow_left = NarrowLeft(marched);
   }
   CloudsOnRay clouds;
   if (source.clouds) {
     clouds = source.clouds->Along(eye, through.direction, through.length_m);
+    std::vector<MarchedLight> upto;
     if (source.media) {
       marched.radiance = clouds.Dimmed(marched.radiance, [&](double distance_m) {
-        return source.media->Along(eye, through.direction, distance_m, air.sunlit()).radiance;
+        upto.push_back(source.media->Along(eye, through.direction, distance_m, air.sunlit()));
+        return upto.back().radiance;
       });
     }
-    rays.cloud_light = rays.cloud_light +
-                       source.light.source.irradiance * AddClouds(clouds, marched.pieces, air, lit);
+    rays.cloud_light =
+        rays.cloud_light + source.light.source.irradiance * AddClouds(clouds, upto, air, lit);
   }
   if (source.media) rays.media = rays.media + marched.radiance;
   if (is_first) {
