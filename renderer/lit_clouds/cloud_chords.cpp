@@ -77,13 +77,13 @@ std::vector<double> CrossingsOf(double altitude_m, const glm::dvec3& origin,
 
 std::vector<CloudChord> ChordsWithin(const AltitudeRange& range, const glm::dvec3& origin,
                                      const glm::dvec3& direction, double length_m,
-                                     double planet_radius_m) {
+                                     double planet_radius_m, double longest_m) {
   const RayOverSphere ray(origin, direction, planet_radius_m);
   std::vector<CloudChord> chords;
   const auto add = [&](double from_m, double to_m) {
     const double begin_m = std::max(from_m, 0.0), end_m = std::min(to_m, length_m);
     if (!(begin_m < end_m)) return;
-    const int pieces = static_cast<int>(std::ceil((end_m - begin_m) / kLongestChord_m));
+    const int pieces = static_cast<int>(std::ceil((end_m - begin_m) / longest_m));
     const double step_m = (end_m - begin_m) / pieces;
     glm::dvec3 start = InFlatFrame(origin + begin_m * direction, planet_radius_m);
     for (int piece = 0; piece < pieces; ++piece) {

@@ -49,10 +49,11 @@ struct AltitudeRange {
 
 /// Returns the parts of a ray within a range of altitudes, in order, cut to chords. The planet does
 /// not end the ray.
-/// @param length_m  of the ray; may be infinite.
+/// @param length_m  of the ray; may be infinite. @param longest_m  chord, at most kLongestChord_m.
 [[nodiscard]] std::vector<CloudChord> ChordsWithin(const AltitudeRange& range,
                                                    const glm::dvec3& origin,
                                                    const glm::dvec3& direction, double length_m,
-                                                   double planet_radius_m);
+                                                   double planet_radius_m,
+                                                   double longest_m = kLongestChord_m);
 
 }  // namespace alpenglow::renderer

@@ -513,9 +513,18 @@ CloudScreen LitClouds::Screen(const CloudRayPart& grey, const glm::dvec3& point)
           static_cast<float>(from_ground)};
 }
 
+bool LitClouds::SharesAltitudes(std::size_t layer) const {
+  const auto [low_m, high_m] = RangeOf(layer);
+  for (std::size_t other = 0; other < layers(); ++other) {
+    const AltitudeRange range = RangeOf(other);
+    if (other != layer && range.low_m < high_m && low_m < range.high_m) return true;
+  }
+  return false;
+}
+
 std::vector<CloudRayPart> LitClouds::PartsOf(const glm::dvec3& origin, const PixelRays::Ray& ray,
                                              bool by_paths) const {
-  constexpr double kNothing = 1e-4;
+  constexpr double kNothing = 1e-4, kLongestShared_m = 4000.0;
   struct Piece {
     std::size_t layer;
     int number;
@@ -525,14 +534,16 @@ std::vector<CloudRayPart> LitClouds::PartsOf(const glm::dvec3& origin, const Pix
   for (std::size_t i = 0; i < layers(); ++i) {
     int number = 0;
     for (const CloudChord& chord :
-         ChordsWithin(RangeOf(i), origin, ray.direction, ray.length_m, geometry_.radius_m()))
+         ChordsWithin(RangeOf(i), origin, ray.direction, ray.length_m, geometry_.radius_m(),
+                      SharesAltitudes(i) ? kLongestShared_m : kLongestChord_m))
       pieces.push_back({i, number++, chord});
   }
   std::sort(pieces.begin(), pieces.end(),
             [](const Piece& a, const Piece& b) { return a.chord.begin_m < b.chord.begin_m; });
   std::vector<CloudRayPart> parts;
-  double left = 1.0;
+  double left = 1.0, farthest_m = 0.0;
   for (const Piece& piece : pieces) {
+    if (left < kNothing && piece.chord.begin_m >= farthest_m) break;
     const CloudLight& light = by_paths ? along_rays_[piece.layer] : Layer(piece.layer);
     const auto [fast, chosen] =
         light.RadianceByBoth({piece.chord.origin, piece.chord.direction}, piece.chord.length_m);
@@ -546,8 +557,12 @@ std::vector<CloudRayPart> LitClouds::PartsOf(const glm::dvec3& origin, const Pix
                      .light = {chosen.sun, chosen.sky, chosen.ground},
                      .once = fast.once});
     left *= fast.scaled_transmittance;
-    if (left < kNothing) break;
+    farthest_m = std::max(farthest_m, parts.back().distance_m);
   }
+  // Chords of layers at the same altitudes overlap.
+  std::stable_sort(parts.begin(), parts.end(), [](const CloudRayPart& a, const CloudRayPart& b) {
+    return a.distance_m < b.distance_m;
+  });
   return parts;
 }
 

@@ -221,6 +221,8 @@ class LitClouds {
                                                          const glm::dvec3& direction) const;
 
  private:
+  /// Returns whether another layer is at some of the altitudes of a layer.
+  [[nodiscard]] bool SharesAltitudes(std::size_t layer) const;
   /// Returns the clouds on a ray, from the nearest on, as long as they are seen.
   /// @param by_paths  whether the light is that by the method of choice.
   [[nodiscard]] std::vector<CloudRayPart> PartsOf(const glm::dvec3& origin,

@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
@@ -37,18 +39,24 @@ const double kLowestCloudSine = std::sin(kLowestCloudLight_deg * kRadiansPerDegr
 struct CloudStage {
   explicit CloudStage(CloudField field, const glm::dvec3& to_sun = kHighSun, double ground_m = 0.0,
                       const CloudPhases& phases = CloudPhases(tests::LobeOf(0.8)))
+      : CloudStage(std::vector{std::move(field)}, to_sun, ground_m, phases) {}
+  explicit CloudStage(std::vector<CloudField> fields, const glm::dvec3& to_sun = kHighSun,
+                      double ground_m = 0.0,
+                      const CloudPhases& phases = CloudPhases(tests::LobeOf(0.8)))
       : sun(SunOf(air, to_sun)), clouds([&] {
           auto layers = std::make_shared<CloudLayers>();
-          layers->push_back({std::move(field), false});
+          for (CloudField& field : fields) layers->push_back({std::move(field), false});
           auto solved = std::make_shared<SolvedClouds>();
           CloudLightOptions options;
           options.factor.rays = 0;
-          options.low_sun = LowSunOver(layers->front().field, geometry.radius_m());
-          solved->light.emplace_back(
-              layers->front().field, CloudScatterers{phases},
-              CloudSurroundings{.to_sun = to_sun.z >= kLowestCloudSine ? to_sun : kVertical,
-                                .ground_altitude_m = ground_m},
-              options);
+          for (const SceneCloudField& layer : *layers) {
+            options.low_sun = LowSunOver(layer.field, geometry.radius_m());
+            solved->light.emplace_back(
+                layer.field, CloudScatterers{phases},
+                CloudSurroundings{.to_sun = to_sun.z >= kLowestCloudSine ? to_sun : kVertical,
+                                  .ground_altitude_m = ground_m},
+                options);
+          }
           solved->layers = layers;
           return solved;
         }()) {}
@@ -570,6 +578,23 @@ TEST(LitClouds, ScreensAtNearlyTheSameDistanceAreOne) {
   EXPECT_FLOAT_EQ(clouds.screens[0].transmittance, 0.3F);
   EXPECT_FLOAT_EQ(clouds.screens[0].radiance[0], 0.5F + 0.5F * 0.5F);
   EXPECT_EQ(clouds.screens[1].distance_m, 16e3);
+}
+
+/// Returns a cube of 400 m of dense cloud, 1000 m high.
+CloudField CubeAt(double east_m) {
+  const CloudLattice lattice{{8, 8, 8}, glm::dvec3(50.0), {east_m, -200.0, 1000.0}, false};
+  return {lattice, tests::FullShape(), tests::EvenMatter(0.05, 1.0)};
+}
+
+// Fixed on 2026-11-30: seen from the altitude of two layers, a cloud of the first one hid all clouds of the
+// other up to 16 km away, also nearer ones. Light of a dense cloud comes from its first 100 m.
+TEST(LitClouds, LayersAtTheSameAltitudesHideEachOtherByDistance) {
+  for (const auto& [first_m, second_m] : {std::pair{10000.0, 2000.0}, {2000.0, 10000.0}}) {
+    const CloudStage both(std::vector{CubeAt(first_m), CubeAt(second_m)});
+    const CloudsOnRay clouds = both.Lit().Along({0.0, 0.0, 1200.0}, {1.0, 0.0, 0.0}, kEndless);
+    EXPECT_GT(clouds.WeightedDistance_m(), 2000.0F) << first_m;
+    EXPECT_LT(clouds.WeightedDistance_m(), 2100.0F) << first_m;
+  }
 }
 
 }  // namespace
