@@ -26,20 +26,28 @@ namespace {
 constexpr double kLeastSize_m = 120.0, kLargestSize_m = 3000.0;
 constexpr double kBreak_m = 1300.0, kBreakWidth_m = 900.0;
 constexpr double kSizeExponent = -1.6;
-constexpr double kGrid_m = 40.0;        // of places and of the union of spheres
-constexpr double kUnion_m = 14.0;       // s
-constexpr double kMostOffset_m = 30.0;  // for the cover
-constexpr double kMostNoise_m = 60.0;   // bound of the noise on the heap
+constexpr double kUsualDepth_m = 1500.0;  // of layers whose clouds do not tower
+constexpr double kGrid_m = 40.0;          // of places and of the union of spheres
+constexpr double kUnion_m = 14.0;         // s
+constexpr double kMostOffset_m = 30.0;    // for the cover
+constexpr double kMostNoise_m = 60.0;     // bound of the noise on the heap
 constexpr double kMostRaised_m = kMostOffset_m + kMostNoise_m;
 constexpr double kLean = 0.12;  // offset along the wind per height
 
+/// Returns the factor of the sizes of large clouds, and of their heights, in deep layers.
+double Towering(const CloudOptions& options) {
+  return std::sqrt(std::max(options.depth_m / kUsualDepth_m, 1.0));
+}
+
 /// Returns the size of a cloud, from the distribution of the header.
-double DrawnSize(double largest_m, CountedRandom& random) {
+double DrawnSize(const CloudOptions& options, CountedRandom& random) {
   constexpr double kPower = 1.0 + kSizeExponent;
+  const double towering = Towering(options);
+  const double largest_m = std::min(towering * kLargestSize_m, 0.25 * options.period_m);
   const double low = PortablePower(kLeastSize_m, kPower), high = PortablePower(largest_m, kPower);
   for (;;) {
     const double size = PortablePower(random.Between(high, low), 1.0 / kPower);
-    const double beyond = std::max(0.0, size - kBreak_m) / kBreakWidth_m;
+    const double beyond = std::max(0.0, size - towering * kBreak_m) / (towering * kBreakWidth_m);
     if (random.Uniform() < PortableExp2(-beyond / std::numbers::ln2)) return size;
   }
 }
@@ -149,18 +157,26 @@ constexpr double kMeanSquareGrowth = 0.3 + 0.7 * 8.0 / 15.0;
 /// clouds than it adds. The offset of the depth makes the cover exact.
 double FootprintCover(double cover) { return std::min(0.99, cover * (1.02 + 0.34 * cover)); }
 
+/// Returns the factor of a cloud's height. Only large clouds tower.
+double HeightPerSize(const CloudOptions& options, double size_m) {
+  constexpr double kFlat_m = 300.0, kTower_m = 1300.0;
+  const double share = std::clamp((size_m - kFlat_m) / (kTower_m - kFlat_m), 0.0, 1.0);
+  return std::lerp(1.0, Towering(options), share);
+}
+
 /// Returns a cloud of the sequence, without its place.
 CumulusCloud DrawnCloud(const CloudOptions& options, int number, double time_s) {
   const auto stream = static_cast<std::uint32_t>(number);
   CountedRandom random(options.seed * 7919U + 13U, stream);
   CumulusCloud cloud{};
-  cloud.size_m = DrawnSize(std::min(kLargestSize_m, 0.25 * options.period_m), random);
+  cloud.size_m = DrawnSize(options, random);
   const double life_s = 1200.0 * std::sqrt(cloud.size_m / 500.0);
   const double lives = time_s / life_s + random.Uniform();
   const double past = std::floor(lives);
   cloud.growth = GrowthAt(lives - past);
   CountedRandom form(options.seed * 7919U + 17U + static_cast<std::uint32_t>(past), stream);
-  const double depth = std::min(options.depth_m, cloud.size_m * form.Between(0.45, 0.9));
+  const double height_m = HeightPerSize(options, cloud.size_m) * cloud.size_m;
+  const double depth = std::min(options.depth_m, height_m * form.Between(0.45, 0.9));
   cloud.spheres = SpheresOf({cloud.size_m, depth, kLean * WindDirection(options)}, form);
   return cloud;
 }

@@ -7,7 +7,8 @@
 // fall off exponentially from 1.3 km on. All sizes are drawn before any cloud is placed, and every
 // cloud is placed, the largest first: the sizes keep their distribution whatever the cover is. Clouds
 // stand where they touch no other if there is such a place, and closer together where noise of 2.5 km
-// is high.
+// is high. In layers of the depth D > 1500 m, large clouds tower: the scales of 1.3 km are larger by
+// t = (D / 1500 m)^(1/2), and clouds from 1.3 km on are higher for their size by t, as this project chose.
 //
 // One cloud: plumes side by side on a base, five for a cloud of 120 m and 20 for one of 1 km, each a
 // chain of spheres that leans to the middle of the cloud; lobes on the upper and outer side of every

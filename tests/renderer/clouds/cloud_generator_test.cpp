@@ -13,6 +13,7 @@
 
 #include "renderer/clouds/cirrus.h"
 #include "renderer/clouds/cloud_cover.h"
+#include "renderer/clouds/cumulus.h"
 #include "tests/fixtures/cloud_census.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/sanitized.h"
@@ -209,6 +210,41 @@ TEST(Cumulus, SizesKeepTheirDistribution) {
     EXPECT_NEAR(tests::PerimeterDimension(clouds, map.spacing_m), 1.35,
                 tests::ScaledDown(0.05, 0.1));
   }
+}
+
+/// The greatest height of the large clouds of a layer, and the mean of height over size.
+struct LargeClouds {
+  double highest_m = 0.0, mean_ratio = 0.0;
+};
+
+LargeClouds LargeCumulus(double depth_m) {
+  constexpr double kLarge_m = 1300.0;
+  CloudOptions options = DefaultCloudOptions(CloudGenus::kCumulus);
+  options.depth_m = depth_m;
+  options.period_m = tests::ScaledDown(8.0, 4.0) * kPeriodStep_m;
+  LargeClouds large;
+  int count = 0;
+  for (const CumulusCloud& cloud : CumulusPopulation(options, 0.0)) {
+    if (cloud.size_m < kLarge_m) continue;
+    double top_m = 0.0;
+    for (const CloudSphere& sphere : cloud.spheres)
+      top_m = std::max(top_m, sphere.centre_m.z + sphere.radius_m);
+    large.highest_m = std::max(large.highest_m, top_m);
+    large.mean_ratio += top_m / cloud.size_m;
+    ++count;
+  }
+  large.mean_ratio /= count;
+  return large;
+}
+
+// Large clouds are higher for their size by (4000 / 1500)^(1/2) = 1.63; the depth of the layer cuts off a
+// fifth of that on average.
+TEST(Cumulus, LargeCloudsOfDeepLayersTower) {
+  const LargeClouds fair = LargeCumulus(1500.0), deep = LargeCumulus(4000.0);
+  EXPECT_LT(fair.mean_ratio, 0.9) << "flatter than wide";
+  EXPECT_GT(deep.mean_ratio / fair.mean_ratio, 1.3);
+  EXPECT_GT(deep.highest_m, 0.8 * 4000.0);
+  EXPECT_LT(deep.highest_m, 1.1 * 4000.0);
 }
 
 TEST(Cirrus, FibresAreThinAndLieAlongTheWind) {
