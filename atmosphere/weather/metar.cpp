@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/names.h"
 #include "atmosphere/base/parsing.h"
 
 namespace alpenglow::atmosphere {
@@ -28,6 +30,17 @@ enum class Section {
   kPressure,
   kOther
 };
+
+constexpr EnumNames kSectionNames{{std::pair{Section::kWind, "a wind"},
+                                   {Section::kWindRange, "a range of the wind"},
+                                   {Section::kVisibility, "a visibility"},
+                                   {Section::kLeastVisibility, "a visibility in one direction"},
+                                   {Section::kRunway, "a state of a runway"},
+                                   {Section::kWeather, "weather"},
+                                   {Section::kClouds, "a group of clouds"},
+                                   {Section::kTemperature, "a temperature"},
+                                   {Section::kPressure, "a pressure"},
+                                   {Section::kOther, "another group"}}};
 
 bool IsOneOf(std::string_view group, std::initializer_list<std::string_view> names) {
   return std::find(names.begin(), names.end(), group) != names.end();
@@ -166,7 +179,8 @@ class ReportReader {
     if (section == Section::kRunway && is_late) section = Section::kOther;
     if (!section) RefuseGroup(group, "no group of a METAR has this form");
     if (section_ && *section < *section_) {
-      RefuseGroup(group, fmt::format("it stands after {}; reports have it before", previous_));
+      RefuseGroup(group, fmt::format("{} in this form stands before {}", kSectionNames.Of(*section),
+                                     previous_));
     }
     if (section_ == section && !MayBeRepeated(*section))
       RefuseGroup(group, fmt::format("{} already gives this", previous_));

@@ -104,7 +104,7 @@ std::vector<SceneCloud> NamedClouds(std::vector<SceneCloud> clouds, const std::s
   const auto [lowest_m, highest_m] = CloudRanges::kBase_m;
   for (SceneCloud& cloud : clouds) {
     RequireInRange(cloud.options.base_altitude_m, lowest_m, highest_m,
-                   fmt::format("the base of {} above the ellipsoid", cloud.name));
+                   fmt::format("the base of {} in metres above the ellipsoid", cloud.name));
     cloud.name = fmt::format("{}: {}", origin, cloud.name);
   }
   return clouds;
@@ -148,6 +148,17 @@ std::optional<std::string> LimitOf(const ReportedCloud& cloud) {
     limits.push_back(fmt::format("with a cover of {}", kMostCumulusCover));
   if (limits.empty()) return std::nullopt;
   return fmt::format("{} is drawn {}", cloud.group, fmt::join(limits, ", "));
+}
+
+/// Returns a message if water of a scene has less than the waves of a report.
+std::optional<std::string> LimitOfWaves(const MetarReport& report, const Scene& scene) {
+  const bool has_water = scene.ground.kind == GroundCover::Kind::kWater ||
+                         scene.ground.sea_level_m || !scene.terrain.land_cover.empty();
+  if (!report.wind || scene.ground.wind_m_per_s || !has_water) return std::nullopt;
+  const double speed_m_per_s = report.wind->speed_m_per_s, most = kWindsOverWater_m_per_s.second;
+  if (speed_m_per_s <= most) return std::nullopt;
+  return fmt::format("water is drawn with the waves of a wind of {:.0f} m/s, not {:.0f}", most,
+                     speed_m_per_s);
 }
 
 /// Returns the airport with a code, or null.
@@ -226,6 +237,7 @@ Scene InWeather(Scene scene, const std::string& origin) {
   if (IsInFog(report) && report.visibility) scene.layers = {FogOf(report, scene.medium, datum_m)};
   if (report.states_clouds) scene.clouds = NamedClouds(CloudsOfReport(report, datum_m), origin);
   if (!scene.time) scene.time = TimeOfReport(report);
+  if (auto note = LimitOfWaves(report, scene)) notes.push_back(std::move(*note));
   if (report.wind && !scene.ground.wind_m_per_s) {
     scene.ground.wind_m_per_s =
         std::min(report.wind->speed_m_per_s, kWindsOverWater_m_per_s.second);

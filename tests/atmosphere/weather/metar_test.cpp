@@ -451,9 +451,10 @@ TEST(Metar, MalformedReportsAreRefusedWithGroupAndReason) {
            {head + "Q1013 A3050",
             "group \"A3050\": it is 1032.8 hPa, and the group before it "
             "1013.0 hPa"},
-           {head + "Q1013 22/12", "group \"22/12\": it stands after Q1013; reports have it before"},
-           {head + "FEW040 9999", "group \"9999\": it stands after FEW040"},
-           {head + "9999 24008KT", "group \"24008KT\": it stands after 9999"},
+           {head + "Q1013 22/12",
+            "group \"22/12\": a temperature in this form stands before Q1013"},
+           {head + "FEW040 9999", "group \"9999\": a visibility in this form stands before FEW040"},
+           {head + "9999 24008KT", "group \"24008KT\": a wind in this form stands before 9999"},
            {head + "QNH1013", "group \"QNH1013\": no group of a METAR has this form"},
            {head + "HELLO", "group \"HELLO\": no group of a METAR has this form"},
            {head + "9999 CLOUDY", "group \"CLOUDY\": no group of a METAR has this form"},

@@ -123,6 +123,10 @@ TEST(SceneWeather, WaterHasTheReportedWindUnlessTheSceneGivesOne) {
   EXPECT_EQ(wind_m_per_s("24060KT"), 20.0) << "the most that water has";
   EXPECT_EQ(wind_m_per_s("/////KT CAVOK"), std::nullopt) << "not observed";
   EXPECT_EQ(wind_m_per_s("24012MPS", "wind_m_per_s = 3\n"), 3.0);
+  EXPECT_THAT(
+      Reported("24060KT", kAtZurich, "[ground]\ncover = \"water\"\n").weather.notes,
+      ElementsAre("weather.metar: water is drawn with the waves of a wind of 20 m/s, not 31"));
+  EXPECT_THAT(Reported("24060KT", kAtZurich).weather.notes, IsEmpty()) << "no water";
 }
 
 TEST(SceneWeather, BasesAreAboveTheStation) {
@@ -210,10 +214,9 @@ TEST(SceneWeather, AReportAndTablesOfTheSameWeatherAreRefused) {
 }
 
 TEST(SceneWeather, CloudsAboveAllFieldsAreRefused) {
-  EXPECT_EQ(
-      tests::FaultOf([] { return Reported("FEW600", kAtZurich); }),
-      "s.toml:7: weather.metar: the base of FEW600 above the ellipsoid is 18711; it must lie in "
-      "[0, 15000]");
+  EXPECT_EQ(tests::FaultOf([] { return Reported("FEW600", kAtZurich); }),
+            "s.toml:7: weather.metar: the base of FEW600 in metres above the ellipsoid is 18711; "
+            "it must lie in [0, 15000]");
 }
 
 TEST(SceneWeather, MalformedReportsAreRefusedWithFileKeyGroupAndReason) {
