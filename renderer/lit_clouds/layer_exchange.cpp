@@ -30,7 +30,8 @@ std::vector<InterfaceFluxes> FluxesBetween(std::span<const CloudLayerFluxes> lay
                                            const OuterFluxes& outer, double ground_albedo) {
   const std::size_t count = layers.size();
   std::vector<InterfaceFluxes> at(count + 1);
-  std::vector<FromBelow> below{{ground_albedo, ground_albedo * outer.direct_on_ground}};
+  std::vector<FromBelow> below{
+      {ground_albedo, ground_albedo * outer.direct_on_ground + outer.from_ground}};
   for (std::size_t i = 0; i < count; ++i) below.push_back(Raised(layers[i], below[i]));
   at[count].down = (outer.sky + outer.reflection * below.back().source) /
                    (1.0 - outer.reflection * below.back().albedo);

@@ -7,7 +7,7 @@
 //
 //   d_i     = T d_(i+1) + R u_i + F              diffuse light downwards
 //   u_(i+1) = R d_(i+1) + T u_i + U              diffuse light upwards
-//   u_0     = A (d_0 + s)                        on ground of albedo A below direct light s
+//   u_0     = A (d_0 + s) + G                    on ground of albedo A below direct light s, with lamps
 //   d_top   = E + S u_top                        below air that reflects S of diffuse light
 //
 // and u_i = A_i d_i + B_i leads from the ground to the top (adding method: van de Hulst 1980,
@@ -32,6 +32,7 @@ struct CloudLayerFluxes {
 struct OuterFluxes {
   double sky = 0.0;               // E: diffuse light from above all layers, without S u_top
   double direct_on_ground = 0.0;  // s
+  double from_ground = 0.0;       // G: diffuse light that the ground emits
   double reflection = 0.0;        // S, in [0, 1)
 };
 

@@ -218,7 +218,7 @@ void LitClouds::FindExchange() {
   sky_above_.assign(layers(), Spectrum(bands));
   ground_below_ = sky_above_;
   diffuse_.assign(layers() + 1, Spectrum(bands));
-  added_ = diffuse_;
+  added_ = sent_back_ = diffuse_;
   left_on_ground_ = Spectrum(bands);
   for (std::size_t band = 0; band < bands; ++band) {
     const double albedo = air_.medium().ground_albedo[band];
@@ -237,7 +237,9 @@ void LitClouds::FindExchange() {
     const double on_clear_ground = clear.down + static_cast<double>(clear_direct[band]);
     left_on_ground_[band] = static_cast<float>(
         on_clear_ground > 0.0 ? (all.front().down + on_ground) / on_clear_ground : 1.0);
+    const auto of_ground = FluxesBetween(LitBy(no_beams, 0.0, band), {.from_ground = 1.0}, albedo);
     for (std::size_t i = 0; i <= layers(); ++i) {
+      sent_back_[i][band] = static_cast<float>(of_ground[i].down);
       added_[i][band] = static_cast<float>(
           std::max(all[i].down - static_cast<double>(air_left_[i]) * from_sky, 0.0));
       const double left = of_sky[i].down;
@@ -314,6 +316,10 @@ std::size_t LitClouds::InterfaceAt(double altitude_m) const {
   std::size_t interface = 0;
   while (interface < layers() && MiddleOf(interface) < altitude_m) ++interface;
   return interface;
+}
+
+const Spectrum& LitClouds::SentBackAt(double altitude_m) const {
+  return sent_back_[InterfaceAt(altitude_m)];
 }
 
 std::vector<DiffuseStretch> LitClouds::DiffuseInAir(const glm::dvec3& origin,

@@ -43,8 +43,9 @@
 //
 //   - skylight and light from the ground that differ with direction or place, where they light clouds,
 //     and air beside single clouds;
-//   - lamplight that the ground reflects to clouds, and the air between clouds and towns of light
-//     pollution (NightAlong);
+//   - lamplight that the ground reflects to clouds, light of towns that clouds and ground send to and
+//     fro, where it lights clouds, and the air between clouds and towns of light pollution (NightAlong);
+//   - the light of the night sky that clouds keep from the ground;
 //   - light that passes within clouds from their sunlit parts into those in the shadow of a mountain,
 //     and the shadow's edge within one screen;
 //   - clouds further away than that towards a low sun (LowSunOver).
@@ -202,6 +203,10 @@ class LitClouds {
   /// Returns the mean light from above and from below in a layer. @param point  in it.
   [[nodiscard]] LightAround AroundLayer(std::size_t layer, const glm::dvec3& point) const;
 
+  /// Returns the diffuse light downwards at an altitude for unit diffuse light that the ground emits,
+  /// with what goes to and fro between ground and layers. It is a mean over the fields without air.
+  [[nodiscard]] const Spectrum& SentBackAt(double altitude_m) const;
+
   /// Mean light below, between or above layers.
   struct InterfaceLight {
     double low_m;      // altitude from which on it holds; -infinity below the lowest layer
@@ -303,6 +308,7 @@ class LitClouds {
   /// layers add to it, and the light that they turn by a few degrees, per unit solar irradiance.
   std::vector<float> air_left_;
   std::vector<Spectrum> added_, turned_;
+  std::vector<Spectrum> sent_back_;  // SentBackAt, at each interface
   Spectrum sky_on_top_;  // irradiance of a clear sky above all layers, per unit solar irradiance
   std::vector<Spectrum> beams_;        // mean ones on each layer, per unit solar irradiance
   std::vector<float> sky_past_;        // transmittance of each layer for skylight

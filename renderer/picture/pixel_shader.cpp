@@ -48,6 +48,18 @@ Hit OrOnSphere(const std::vector<SpecularSphere>& spheres, const CameraRay& ray,
           entered->distance_m * pixel_rad};
 }
 
+/// Returns the light of towns that clouds send to a surface [W m^-2 nm^-1]: the ground around emits the
+/// radiance 2 J (Skyglow).
+/// @param cos_up  between its normal and the vertical.
+Spectrum TownsByClouds(const FrameContext& frame, const glm::dvec3& point, double cos_up) {
+  const std::optional<Spectrum>& towns = frame.scene().towns();
+  const LitClouds* clouds = frame.lights().front().clouds.get();
+  const Spectrum none(frame.scene().medium().wavelengths_nm.size());
+  if (!towns || clouds == nullptr || !frame.Has(Effect::kCloudGlow)) return none;
+  return static_cast<float>(kPi * (1.0 + cos_up)) *
+         (*towns * clouds->SentBackAt(frame.geometry().AltitudeOf(point)));
+}
+
 }  // namespace
 
 Hit PixelShader::Trace(const CameraRay& ray, double expected_m) const {
@@ -239,7 +251,8 @@ void PixelShader::AddGround(const Hit& hit, const CameraRay& ray, const LampTile
   }
   if (const NightLight* night = frame_->sky_lights().night.get()) {
     const double cos_up = glm::dot(hit.normal, seen.up);
-    natural = natural + static_cast<float>(1.0 / kPi) * (seen.albedo * night->OnSurface(cos_up));
+    const Spectrum light = night->OnSurface(cos_up) + TownsByClouds(*frame_, hit.point, cos_up);
+    natural = natural + static_cast<float>(1.0 / kPi) * (seen.albedo * light);
   }
   const Spectrum lamp_light = shaded.transmittance * ground_light.OfLamps(seen, near.surface);
   shaded.lamps = shaded.lamps + lamp_light;

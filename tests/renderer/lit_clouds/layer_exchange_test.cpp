@@ -22,7 +22,7 @@ std::vector<InterfaceFluxes> FollowedBetween(std::span<const CloudLayerFluxes> l
     down[i] += layers[i].sun_down;
     up[i + 1] += layers[i].sun_up;
   }
-  up[0] += ground_albedo * outer.direct_on_ground;
+  up[0] += ground_albedo * outer.direct_on_ground + outer.from_ground;
   for (int order = 0; order < 2000; ++order) {
     std::vector<double> next_down(top + 1), next_up(top + 1);
     for (std::size_t i = 0; i <= top; ++i) {
@@ -43,7 +43,8 @@ std::vector<InterfaceFluxes> FollowedBetween(std::span<const CloudLayerFluxes> l
 
 // Both sum the same series; 1e-12 is rounding.
 TEST(LayerExchange, EqualsLightFollowedFromLayerToLayer) {
-  const OuterFluxes outer{.sky = 0.2, .direct_on_ground = 0.25, .reflection = 0.15};
+  const OuterFluxes outer{
+      .sky = 0.2, .direct_on_ground = 0.25, .from_ground = 0.1, .reflection = 0.15};
   const auto at = FluxesBetween(kThreeLayers, outer, 0.6);
   const auto followed = FollowedBetween(kThreeLayers, outer, 0.6);
   ASSERT_EQ(at.size(), 4u);

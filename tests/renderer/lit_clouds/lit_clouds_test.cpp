@@ -586,6 +586,21 @@ CloudField CubeAt(double east_m) {
   return {lattice, tests::FullShape(), tests::EvenMatter(0.05, 1.0)};
 }
 
+// Eddington's reflectance of a layer of the optical depth t for diffuse light is x / (1 + x) with
+// x = 3/4 (1 - g) t. It is within a few hundredths of exact values for thick layers (Joseph, Wiscombe and
+// Weinman 1976, J. Atmos. Sci. 33, 2452). Ground of albedo A sends A of it up again.
+TEST(LitClouds, DecksSendLightOfTheGroundBack) {
+  const CloudStage& stage = DeckStage();
+  const LitClouds lit = stage.Lit();
+  const double x = 0.75 * 0.2 * 8.0, reflectance = x / (1.0 + x);
+  for (std::size_t band = 0; band < stage.air.bands(); ++band) {
+    const double albedo = stage.air.medium().ground_albedo[band];
+    EXPECT_NEAR(static_cast<double>(lit.SentBackAt(0.0)[band]),
+                reflectance / (1.0 - albedo * reflectance), 0.05);
+    EXPECT_EQ(lit.SentBackAt(3000.0)[band], 0.0F) << "above the deck";
+  }
+}
+
 // Fixed on 2026-11-30: seen from the altitude of two layers, a cloud of the first one hid all clouds of the
 // other up to 16 km away, also nearer ones. Light of a dense cloud comes from its first 100 m.
 TEST(LitClouds, LayersAtTheSameAltitudesHideEachOtherByDistance) {

@@ -140,5 +140,28 @@ TEST(OvercastPicture, FogBelowStratusHasNoSteps) {
     EXPECT_NEAR(light[row] / light[row - 1], 1.0, 0.04) << row;
 }
 
+/// Returns the luminance of level ground in a town on a night without a moon [cd/m^2].
+double GroundOfATown(const char* clouds) {
+  Scene scene = QuickScene(30.0, 0.0, -60.0, 20.0);
+  scene.terrain.kind = TerrainSource::Kind::kNone;
+  scene.town_zenith = 17.5;
+  scene.clouds = CloudsFromText(clouds);
+  RenderSettings settings;
+  settings.width = 2;
+  settings.height = 2;
+  settings.samples_per_pixel = 1;
+  const UtcTime time = ParseInstant("2026-12-09T00:00:00Z");
+  return tests::Luminance(SceneRenderer(scene).Render(time, settings).at(0, 0));
+}
+
+// Under an overcast sky, the zenith over Berlin was 10 times as bright as under a clear one, and 3 times 32
+// km outside (Kyba, Ruhtz, Fischer, Hoelker 2011, PLoS ONE 6, e17307). Ground sees the whole sky, whose
+// clear horizon is brighter than its zenith, and has less of this factor.
+TEST(OvercastPicture, GroundOfTownsIsSeveralTimesBrighterBelowClouds) {
+  const double factor = GroundOfATown("overcast") / GroundOfATown("none");
+  EXPECT_GT(factor, 2.8);
+  EXPECT_LT(factor, 10.0);
+}
+
 }  // namespace
 }  // namespace alpenglow::renderer
