@@ -5,7 +5,8 @@
 // distribution of Hansen (1971), J. Atmos. Sci. 28, 1400, of effective variance 1/9, for effective
 // size parameters 2 pi r_eff / wavelength from 25 to 504 in steps of a third of an octave, and for the
 // refractive index of water at 400, 550 and 700 nm. The index is larger for blue light and puts its bow
-// up to a degree further inside: without it, small droplets would have a bow with a blue outer edge.
+// further inside. With the same index for all light, the wider bow of red light would make both edges
+// of the bow of 10 um droplets red; with their own, the outer one is red and the inner one nearly white.
 #pragma once
 
 #include "renderer/cloud_phase/cloud_phase.h"
