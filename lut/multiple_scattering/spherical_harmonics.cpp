@@ -127,7 +127,7 @@ TableQuadrature MakeTableQuadrature(int degree) {
 
 // Returns a quadrature for the degree or a higher one, made once.
 const TableQuadrature& QuadratureOfTables(int degree) {
-  constexpr int kLow = 16, kMiddle = 170;
+  constexpr int kLow = 16, kMiddle = 170, kHigh = 1500, kHighest = 8200;
   if (degree <= kLow) {
     static const TableQuadrature low = MakeTableQuadrature(kLow);
     return low;
@@ -136,8 +136,12 @@ const TableQuadrature& QuadratureOfTables(int degree) {
     static const TableQuadrature middle = MakeTableQuadrature(kMiddle);
     return middle;
   }
-  static const TableQuadrature high = MakeTableQuadrature(8200);
-  return high;
+  if (degree <= kHigh) {
+    static const TableQuadrature high = MakeTableQuadrature(kHigh);
+    return high;
+  }
+  static const TableQuadrature highest = MakeTableQuadrature(kHighest);
+  return highest;
 }
 
 PhaseQuadrature QuadratureOf(const PhaseTable& table, const TableQuadrature& of_tables) {
