@@ -122,35 +122,11 @@ class OneRay {
 };
 
 HdrImage ReferenceOf(const ReferenceScene& scene, const PaintedView& view) {
-  RenderSettings settings;
-  settings.width = view.width;
-  settings.height = view.height;
-  settings.samples_per_pixel = kSamples;
-  settings.filter = PixelFilter::Kind::kBox;
-  settings.layers = LayersOfEdges();
+  RenderSettings settings = ComparisonSettings(view.width, view.height, kSamples);
   if (!scene.scene.clouds.empty()) settings.layers.push_back(PictureLayer::kClouds);
   CameraSample camera(view.now);
   camera.poses = {view.eye};
   return RendererOf(scene)->Render(camera, settings);
-}
-
-/// Returns the differences in pixels with or without clouds, edges left out; nothing if there are none.
-std::optional<ErrorStatistics> DifferenceWhere(bool has_clouds, const HdrImage& reference,
-                                               const HdrImage& painted) {
-  constexpr float kLeftByClouds = 0.9F;
-  const auto layer = std::find_if(reference.layers.begin(), reference.layers.end(),
-                                  [](const ImageLayer& of) { return of.name == "clouds.T"; });
-  if (layer == reference.layers.end()) return std::nullopt;
-  const std::vector<bool> edges = EdgesOf(reference);
-  const double floor = ChangeFloor(reference);
-  std::vector<double> changes;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const bool is_cloudy = layer->values[i] < kLeftByClouds;
-    if (!edges[i] && is_cloudy == has_clouds)
-      changes.push_back(PixelChange(reference.rgb[i], painted.rgb[i], floor));
-  }
-  if (changes.empty()) return std::nullopt;
-  return ErrorStatistics(std::move(changes));
 }
 
 std::string Row(const std::string& name, const ErrorStatistics& is, const std::string& time) {
@@ -276,9 +252,9 @@ std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene, const 
       100.0 * (1.0 - static_cast<double>(all.count()) / static_cast<double>(edges.size())),
       "off by", "mean", "99 %", "99.9 %", "frame");
   text += Row("picture, from renderer's", all, fmt::format("{:.1f} ms", painted.frame_ms));
-  if (const auto cloudy = DifferenceWhere(true, by_renderer, painted.image))
+  if (const auto cloudy = DifferenceOf(by_renderer, painted.image, CloudyPixels::kCloudy))
     text += Row("pixels with clouds", *cloudy, "");
-  if (const auto clear = DifferenceWhere(false, by_renderer, painted.image))
+  if (const auto clear = DifferenceOf(by_renderer, painted.image, CloudyPixels::kClear))
     text += Row("pixels without clouds", *clear, "");
   for (const Shortcut& shortcut : kShortcuts) {
     PaintSizes better = sizes;

@@ -158,6 +158,22 @@ bool IsEdgeOfLamps(const HdrImage& image, const std::vector<float>& lamps, int x
   return light.most - light.least > kStep * std::max(light.most, floor_cd_per_m2);
 }
 
+/// Returns the changes of pixels that are not at an edge.
+/// @param counts  returns whether a pixel counts, by its number.
+template <typename Counts>
+std::vector<double> ChangesWhere(const Counts& counts, const HdrImage& reference,
+                                 const HdrImage& painted) {
+  ALPENGLOW_ENSURE(reference.rgb.size(), ==, painted.rgb.size());
+  const std::vector<bool> edges = EdgesOf(reference);
+  const double floor = ChangeFloor(reference);
+  std::vector<double> changes;
+  for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
+    if (!edges[i] && counts(i))
+      changes.push_back(PixelChange(reference.rgb[i], painted.rgb[i], floor));
+  }
+  return changes;
+}
+
 }  // namespace
 
 std::optional<double> PathSpread::RelativeError() const {
@@ -319,15 +335,21 @@ std::vector<bool> EdgesOf(const HdrImage& reference) {
 }
 
 ErrorStatistics DifferenceOf(const HdrImage& reference, const HdrImage& painted) {
-  ALPENGLOW_ENSURE(reference.rgb.size(), ==, painted.rgb.size());
-  const std::vector<bool> edges = EdgesOf(reference);
-  const double floor = ChangeFloor(reference);
-  std::vector<double> changes;
-  for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
-    if (!edges[i]) changes.push_back(PixelChange(reference.rgb[i], painted.rgb[i], floor));
-  }
+  std::vector<double> changes = ChangesWhere([](std::size_t) { return true; }, reference, painted);
   ALPENGLOW_ENSURE(changes.size(), >, 0U);
   return ErrorStatistics(std::move(changes));
+}
+
+std::optional<ErrorStatistics> DifferenceOf(const HdrImage& reference, const HdrImage& painted,
+                                            CloudyPixels pixels) {
+  constexpr float kLeftByClouds = 0.9F;
+  const std::vector<float>* left = FindLayer(reference, "clouds.T");
+  if (left == nullptr) return std::nullopt;
+  const auto counts = [&](std::size_t i) {
+    return ((*left)[i] < kLeftByClouds) == (pixels == CloudyPixels::kCloudy);
+  };
+  std::vector<double> changes = ChangesWhere(counts, reference, painted);
+  return changes.empty() ? std::nullopt : std::optional(ErrorStatistics(std::move(changes)));
 }
 
 }  // namespace alpenglow::renderer

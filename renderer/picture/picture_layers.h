@@ -182,4 +182,12 @@ class PixelWriter {
 ///   sizes differ or all pixels are at edges.
 [[nodiscard]] ErrorStatistics DifferenceOf(const HdrImage& reference, const HdrImage& painted);
 
+/// Pixels from which clouds take more than a tenth of the light, and the others.
+enum class CloudyPixels { kCloudy, kClear };
+/// Returns the differences of such pixels only; nothing if there are none.
+/// @param reference  also with PictureLayer::kClouds, otherwise it has no such pixels.
+[[nodiscard]] std::optional<ErrorStatistics> DifferenceOf(const HdrImage& reference,
+                                                          const HdrImage& painted,
+                                                          CloudyPixels pixels);
+
 }  // namespace alpenglow::renderer

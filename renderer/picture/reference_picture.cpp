@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "renderer/picture/picture_layers.h"
+
 namespace alpenglow::renderer {
 namespace {
 
@@ -25,6 +27,16 @@ bool IsSame(const ReferencePicture::View& a, const ReferencePicture::View& b) {
 std::unique_ptr<SceneRenderer> RendererOf(const ReferenceScene& of) {
   return of.ground ? std::make_unique<SceneRenderer>(of.scene, of.ground())
                    : std::make_unique<SceneRenderer>(of.scene);
+}
+
+RenderSettings ComparisonSettings(int width, int height, int samples) {
+  RenderSettings settings;
+  settings.width = width;
+  settings.height = height;
+  settings.samples_per_pixel = samples;
+  settings.filter = PixelFilter::Kind::kBox;
+  settings.layers = LayersOfEdges();
+  return settings;
 }
 
 /// Holds the renderer of the most recent scene.

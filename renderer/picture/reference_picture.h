@@ -27,6 +27,10 @@ struct ReferenceScene {
 
 [[nodiscard]] std::unique_ptr<SceneRenderer> RendererOf(const ReferenceScene& scene);
 
+/// Returns the settings of a picture that drawn ones are compared with by DifferenceOf: no pixel has
+/// light of its neighbours.
+[[nodiscard]] RenderSettings ComparisonSettings(int width, int height, int samples);
+
 /// Renders reference pictures in the background. A renderer is prepared when a scene is first shown
 /// (seconds) and then kept. For each view it produces a small picture with one ray per pixel, then
 /// full ones with 1, 4, 16 and 64. When the view changes, rendering of the old view stops.

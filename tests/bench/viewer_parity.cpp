@@ -114,12 +114,9 @@ void alpenglow::tests::ViewerParity(int count, char** arguments) {
   if (count < 2) {
     throw atmosphere::InputError("usage: viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]");
   }
-  viewer::RenderSettings settings;
-  settings.width = count > 3 ? std::atoi(arguments[2]) : 640;
-  settings.height = count > 3 ? std::atoi(arguments[3]) : 360;
-  settings.samples_per_pixel = count > 4 ? std::atoi(arguments[4]) : 64;
-  settings.filter = viewer::PixelFilter::Kind::kBox;
-  settings.layers = viewer::LayersOfEdges();
+  const viewer::RenderSettings settings = viewer::ComparisonSettings(
+      count > 3 ? std::atoi(arguments[2]) : 640, count > 3 ? std::atoi(arguments[3]) : 360,
+      count > 4 ? std::atoi(arguments[4]) : 64);
   const viewer::HeadlessContext context;
   viewer::Run(arguments[1], settings, count > 5 ? arguments[5] : "");
 }

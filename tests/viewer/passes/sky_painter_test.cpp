@@ -41,16 +41,6 @@ constexpr PictureSize kFull{96, 54}, kScaled = tests::ScaledDown(kFull, {64, 36}
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
 constexpr int kPictureSamples = 32;
 
-RenderSettings ReferenceSettings(const PictureSize& size, int samples) {
-  RenderSettings settings;
-  settings.width = size.width;
-  settings.height = size.height;
-  settings.samples_per_pixel = samples;
-  settings.filter = PixelFilter::Kind::kBox;
-  settings.layers = LayersOfEdges();
-  return settings;
-}
-
 PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcTime& now,
                    const PictureSize& size = kFull) {
   CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
@@ -76,8 +66,10 @@ class BothPrograms {
     camera_sample.poses = {view.eye};
     painter_.WaitUntilReady(view, samples_);
     painter_.Paint(view, samples_);
-    return DifferenceOf(reference_.Render(camera_sample, ReferenceSettings(kScaled, samples_)),
-                        painter_.picture().Read());
+    return DifferenceOf(
+        reference_.Render(camera_sample,
+                          ComparisonSettings(kScaled.width, kScaled.height, samples_)),
+        painter_.picture().Read());
   }
   /// @param view  from the height over the ground that the scene was made with.
   ErrorStatistics Difference(const ParityView& view) {
@@ -349,7 +341,7 @@ TEST_F(DisksInTheSky, HaveTheRightIlluminanceAtAnyPictureSize) {
   CameraSample camera_sample(alone.now);
   camera_sample.poses = {alone.eye};
   const HdrImage rendered =
-      SceneRenderer(shared().scene).Render(camera_sample, ReferenceSettings({64, 64}, 4));
+      SceneRenderer(shared().scene).Render(camera_sample, ComparisonSettings(64, 64, 4));
   EXPECT_NEAR(whole / LightOfDisks::SumOf(rendered, alone.eye.fov_rad), 1.0, 0.02)
       << "with the sky around the disk, which has a thousandth of the light";
   for (const PictureSize& size : {PictureSize{16, 9}, {48, 27}, {160, 90}, {640, 360}}) {
@@ -529,7 +521,7 @@ TEST_F(SkyPainterTest, FogEqualsTheRenderersFromAnyHeight) {
     CameraSample camera_sample(view.now);
     camera_sample.poses = {view.eye};
     const HdrImage rendered =
-        SceneRenderer(scene).Render(camera_sample, ReferenceSettings({8, 6}, 4));
+        SceneRenderer(scene).Render(camera_sample, ComparisonSettings(8, 6, 4));
     const HdrImage painted = painter.picture().Read();
     for (const std::size_t band : {0, 1, 2}) {
       double of_painted = 0.0, of_rendered = 0.0;
