@@ -14,20 +14,6 @@ ShaderPiece LayersDefined(int layers) {
   return {"layers of clouds", fmt::format("#define CLOUD_LAYERS {}\n", layers)};
 }
 
-// Blends the following draw calls by shares of what is drawn and of what is there.
-class Fading {
- public:
-  explicit Fading(double share) {
-    const auto weight = static_cast<float>(share);
-    glBlendColor(weight, weight, weight, weight);
-    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
-    glEnable(GL_BLEND);
-  }
-  ~Fading() { glDisable(GL_BLEND); }
-  Fading(const Fading&) = delete;
-  Fading& operator=(const Fading&) = delete;
-};
-
 void ClearToNoCloud() {
   glClearColor(0.0F, 0.0F, 1.0F, 0.0F);
   glClear(GL_COLOR_BUFFER_BIT);
@@ -56,8 +42,9 @@ const ShaderProgram& CloudPass::March(const CloudQuality& quality) {
       {"steps in clouds", fmt::format("#define CLOUD_STEPS {}\n#define CLOUD_SUN_STEPS {}\n",
                                       quality.steps, quality.sun_steps)});
   ShaderProgram made = FullScreenProgram(WithViewerPieces(
-      std::move(texts), {"viewer/shaders/clouds/light.glsl", "viewer/shaders/clouds/march.glsl",
-                         "viewer/shaders/clouds/march.frag.glsl"}));
+      std::move(texts),
+      {"viewer/shaders/clouds/light.glsl", "viewer/shaders/clouds/march.glsl",
+       "viewer/shaders/clouds/rays.glsl", "viewer/shaders/clouds/march.frag.glsl"}));
   made.BindBlock("View", view_binding_);
   Connect(made);
   made.BindSampler("surface_map", units_.surface);
@@ -74,6 +61,12 @@ void CloudPass::Connect(const ShaderProgram& program) const {
   program.BindSampler("cloud_surface_map", units_.surface);
 }
 
+void CloudPass::UseForRays(const ShaderProgram& program, int width, int height) const {
+  program.Use();
+  glUniform2i(program.Uniform("picture_size"), width, height);
+  glUniform1i(program.Uniform("cloud_scale"), scale_);
+}
+
 void CloudPass::PaintLayer(const ShaderProgram& march, const CloudFollower& clouds,
                            std::size_t layer) const {
   ClearToNoCloud();
@@ -83,7 +76,7 @@ void CloudPass::PaintLayer(const ShaderProgram& march, const CloudFollower& clou
     DrawFullScreen(march, no_vertices_);
   };
   if (clouds.earlier() != nullptr) draw(*clouds.earlier(), kMostCloudLayers + layer);
-  const Fading fading(clouds.share());
+  const Blending fading(Blending::Kind::kMix, clouds.share());
   draw(clouds.shown(), layer);
 }
 
@@ -102,9 +95,7 @@ void CloudPass::Gather(const CloudFollower& clouds, const CloudsBlock& block, in
   (clouds.earlier() != nullptr ? clouds.earlier() : &clouds.shown())
       ->textures->BindLight(units_.first + 1);
   const ShaderProgram& march = March(quality);
-  march.Use();
-  glUniform2i(march.Uniform("picture_size"), width, height);
-  glUniform1i(march.Uniform("cloud_scale"), scale_);
+  UseForRays(march, width, height);
   for (std::size_t layer = 0; layer < clouds.layers(); ++layer) {
     layers_[layer].Bind();
     PaintLayer(march, clouds, layer);
@@ -119,16 +110,13 @@ void CloudPass::Colour(const CloudFollower& clouds, bool two_lights, int width, 
     found = colours_.emplace(kind, make_colours_(kind)).first;
     Connect(found->second);
     found->second.BindSampler("surface_map", units_.surface);
+    for (int layer = 0; layer < kind.layers; ++layer)
+      found->second.BindSampler(fmt::format("layer_light_{}", layer).c_str(), units_.march + layer);
   }
   const ShaderProgram& colours = found->second;
-  colours.Use();
-  glUniform2i(colours.Uniform("picture_size"), width, height);
-  glUniform1i(colours.Uniform("cloud_scale"), scale_);
-  for (std::size_t layer = 0; layer < clouds.layers(); ++layer) {
-    const int unit = units_.march + static_cast<int>(layer);
-    layers_[layer].BindTexture(unit);
-    glUniform1i(colours.Uniform(fmt::format("layer_light_{}", layer).c_str()), unit);
-  }
+  UseForRays(colours, width, height);
+  for (int layer = 0; layer < kind.layers; ++layer)
+    layers_[static_cast<std::size_t>(layer)].BindTexture(units_.march + layer);
   clouds_->Bind();
   DrawFullScreen(colours, no_vertices_);
   CheckGl("CloudPass::Colour");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws the light of clouds before the picture: the layers along the rays of every second pixel or so
+// Draws the light of clouds before the picture: the layers along the rays of one of 1, 4 or 9 pixels
 // (clouds/march.frag.glsl), then their colours behind air (clouds/colour.frag.glsl). The programs of
 // the picture interpolate the result (clouds/picture.glsl) and take the shadows of clouds from the
 // same textures (clouds/light.glsl).
@@ -39,7 +39,7 @@ struct CloudUnits {
 
 class CloudPass {
  public:
-  /// What programs depend on.
+  /// Properties of a program of colours.
   struct Kind {
     int layers;
     bool two_lights;
@@ -65,6 +65,8 @@ class CloudPass {
  private:
   using MarchKind = std::pair<int, int>;  // steps, steps towards the light
   [[nodiscard]] const ShaderProgram& March(const CloudQuality& quality);
+  /// Uses a program with clouds/rays.glsl for a picture of this size.
+  void UseForRays(const ShaderProgram& program, int width, int height) const;
   void PaintLayer(const ShaderProgram& march, const CloudFollower& clouds, std::size_t layer) const;
 
   std::vector<ShaderPiece> view_;

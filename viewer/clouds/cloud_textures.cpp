@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "renderer/clouds/cloud_bricks.h"
+
 namespace alpenglow::viewer {
 namespace {
 
 constexpr std::size_t kTexturesOfLayer = 7;
+constexpr int kCorners = CloudField::StoredBricks::kCornersOfSide;
+constexpr int kVoxels = CloudField::StoredBricks::kVoxels;
 
 enum class Edges { kRepeat, kClamp };
 
@@ -27,11 +31,10 @@ void UploadBricks(const GlTexture& texture, const CloudLayerTexels& of) {
 }
 
 void UploadDepth(const GlTexture& texture, const CloudLayerTexels& of) {
-  constexpr int kSide = 9;
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   UploadTexture(GL_TEXTURE_3D, texture,
-                {GL_R8, kSide * of.tiles[0], kSide * of.tiles[1], kSide * of.tiles[2], GL_RED,
-                 GL_UNSIGNED_BYTE, of.depth.data()});
+                {GL_R8, kCorners * of.tiles[0], kCorners * of.tiles[1], kCorners * of.tiles[2],
+                 GL_RED, GL_UNSIGNED_BYTE, of.depth.data()});
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   ContinueAs(GL_TEXTURE_3D, Edges::kClamp);
 }
@@ -126,21 +129,19 @@ void CloudTextures::BindLayer(const ShaderProgram& march, std::size_t number, st
     BindTexture(unit++, GL_TEXTURE_2D, *texture);
   BindLight(unit);
   const CloudLayerTexels& of = texels_->layer[number];
-  constexpr int kSide = 8;
   const auto f = [](double value) { return static_cast<float>(value); };
   const double cells_m = of.cells[2] * of.cell_height_m;
   glUniform1i(march.Uniform("layer_number"), static_cast<GLint>(in_block));
   glUniform4f(march.Uniform("layer_shape"), f(1.0 / of.voxel_m), f(of.origin_m.z),
-              f(kSide * of.voxel_m), f(of.cells[2]));
-  glUniform4f(march.Uniform("layer_cells"), f(of.cells_base_m), f(1.0 / cells_m),
-              f(of.scaled_albedo), 0.0F);
-  constexpr int kCorners = 9;
+              f(kVoxels * of.voxel_m), f(of.cells[2]));
+  glUniform3f(march.Uniform("layer_cells"), f(of.cells_base_m), f(1.0 / cells_m),
+              f(of.scaled_albedo));
   glUniform3f(march.Uniform("layer_texel"), f(1.0 / (kCorners * of.tiles[0])),
               f(1.0 / (kCorners * of.tiles[1])), f(1.0 / (kCorners * of.tiles[2])));
   glUniform2f(march.Uniform("layer_periods_per_voxel"), f(of.voxel_m / of.size_m.x),
               f(of.voxel_m / of.size_m.y));
   glUniform3f(march.Uniform("layer_voxels"), f(of.size_m.x / of.voxel_m),
-              f(of.size_m.y / of.voxel_m), f(kSide * of.bricks[2]));
+              f(of.size_m.y / of.voxel_m), f(kVoxels * of.bricks[2]));
   glUniform3f(march.Uniform("beam_towards"), f(to_light.x), f(to_light.y), f(to_light.z));
   glUniform1fv(march.Uniform("layer_factor"), static_cast<GLsizei>(of.factor.size()),
                of.factor.data());

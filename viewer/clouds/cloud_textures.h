@@ -38,7 +38,6 @@ class CloudTextures {
 
   /// Uploads the next texture. Returns whether all are uploaded.
   bool UploadOne(int unit);
-  [[nodiscard]] const CloudTexels& texels() const { return *texels_; }
   /// Returns the number of layers that are drawn.
   [[nodiscard]] std::size_t layers() const { return layers_.size(); }
 

@@ -6,7 +6,7 @@
 // window. All GL calls of this folder use the context that is current on the calling thread.
 //
 // It also provides owners of OpenGL object names, the upload of textures and uniform blocks and
-// their binding, and a scissor rectangle for its scope. An object must not outlive the context in
+// their binding, and a scissor rectangle and blending for a scope. An object must not outlive the context in
 // which it was created.
 #pragma once
 
@@ -168,6 +168,24 @@ class Scissor {
   ~Scissor() { glDisable(GL_SCISSOR_TEST); }
   Scissor(const Scissor&) = delete;
   Scissor& operator=(const Scissor&) = delete;
+};
+
+/// Blends the following draw calls with the target during its lifetime, with a share of what is drawn.
+class Blending {
+ public:
+  enum class Kind {
+    kAdd,  // share * drawn + target
+    kMix,  // share * drawn + (1 - share) * target
+  };
+  Blending(Kind kind, double share) {
+    const auto weight = static_cast<float>(share);
+    glBlendColor(weight, weight, weight, weight);
+    glBlendFunc(GL_CONSTANT_ALPHA, kind == Kind::kAdd ? GL_ONE : GL_ONE_MINUS_CONSTANT_ALPHA);
+    glEnable(GL_BLEND);
+  }
+  ~Blending() { glDisable(GL_BLEND); }
+  Blending(const Blending&) = delete;
+  Blending& operator=(const Blending&) = delete;
 };
 
 }  // namespace alpenglow::viewer

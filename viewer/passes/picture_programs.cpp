@@ -59,8 +59,9 @@ CloudPass ConnectedClouds() {
     Append(texts, WithViewerPieces(
                       {}, {"viewer/shaders/air/block.glsl", "viewer/shaders/air/sun_light.glsl"}));
     Append(texts, CloudTexts(kind.layers));
-    ShaderProgram made = FullScreenProgram(
-        WithViewerPieces(std::move(texts), {"viewer/shaders/clouds/colour.frag.glsl"}));
+    ShaderProgram made = FullScreenProgram(WithViewerPieces(
+        std::move(texts),
+        {"viewer/shaders/clouds/rays.glsl", "viewer/shaders/clouds/colour.frag.glsl"}));
     made.BindBlock("View", kViewBinding);
     made.BindBlock("Air", kAirBinding);
     AirTextures::Prepare(made, kAirUnit, kTablesBinding);

@@ -46,20 +46,6 @@ class BesideLand {
   BesideLand& operator=(const BesideLand&) = delete;
 };
 
-// Enables additive blending with a weight.
-class Adding {
- public:
-  explicit Adding(double share) {
-    const auto weight = static_cast<float>(share);
-    glBlendColor(weight, weight, weight, weight);
-    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE);
-    glEnable(GL_BLEND);
-  }
-  ~Adding() { glDisable(GL_BLEND); }
-  Adding(const Adding&) = delete;
-  Adding& operator=(const Adding&) = delete;
-};
-
 }  // namespace
 
 SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const PaintedView& first,
@@ -241,7 +227,8 @@ glm::mat3 ScreenFromDirection(const PaintedView& view) {
 // @param shares  factors of the light of sun and moon.
 void SkyPainter::DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares) {
   const MoonDisk& moon = seen.moon;
-  const ShaderProgram& program = programs_.Of(StageOfDisks());
+  const PictureStage stage = StageOfDisks();
+  const ShaderProgram& program = programs_.Of(stage);
   program.Use();
   glUniform4f(program.Uniform("moon"), static_cast<float>(moon.direction.seen.x),
               static_cast<float>(moon.direction.seen.y), static_cast<float>(moon.direction.seen.z),
@@ -256,7 +243,7 @@ void SkyPainter::DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares)
               static_cast<float>(moon.earthshine_per_irradiance));
   glUniform2f(program.Uniform("disk_shares"), static_cast<float>(shares.x),
               static_cast<float>(shares.y));
-  if (painted_) {
+  if (stage.cloud_layers > 0) {
     const glm::mat3 screen = ScreenFromDirection(painted_->view);
     glUniformMatrix3fv(program.Uniform("cloud_screen_from_direction"), 1, GL_FALSE, &screen[0][0]);
   }
@@ -375,7 +362,7 @@ void SkyPainter::PaintDisks(const Frame& frame, const PixelRay& ray) {
   };
   DescribeDisks(seen, {share(LightSource::kSun), share(LightSource::kMoon)});
   const BesideLand beside;
-  const Adding adding(1.0 / ray.of);
+  const Blending adding(Blending::Kind::kAdd, 1.0 / ray.of);
   for (const PixelBox& box : BoxesAround(disks, frame.view)) {
     const Scissor within(box);
     programs_.Paint(StageOfDisks());
@@ -419,7 +406,7 @@ void SkyPainter::PaintSmallDisks(const Frame& frame, const RenderTarget& target)
     PaintAlone(disk, drawn_rad, FrameOf(alone));
     target.Bind();
     UploadDisks(frame, InAir(frame), {});
-    const Adding adding(1.0);
+    const Blending adding(Blending::Kind::kAdd, 1.0);
     const Scissor within(*PixelsOfDisk(disk.towards, drawn_rad, view));
     small_disk_painter_.AddTo(view, alone);
   }
@@ -502,8 +489,8 @@ void SkyPainter::PaintPicture(const Frame& frame, double share) {
   picture_->UseDepthOf(*surface_);
   lamp_painter_.Bind();
   const BesideLand beside;
-  std::optional<Adding> adding;
-  if (share < 1.0) adding.emplace(share);
+  std::optional<Blending> adding;
+  if (share < 1.0) adding.emplace(Blending::Kind::kAdd, share);
   const PictureStage stage = StageOf(frame);
   if (share == 1.0 && programs_.HasPainted()) MakeOneReady(frame, stage);
   if (!scene_.AwaitsLand()) programs_.Paint(stage);

@@ -10,16 +10,10 @@
 //
 // for all screens from the farthest to the nearest. Clouds also dim the beam in the air, and change
 // the light that it scatters more than once, below, between and above the layers (their interfaces).
-in vec2 screen;
 layout(location = 0) out vec4 clouds;  // added [cd/m^2, linear sRGB]; transmittance
 layout(location = 1) out vec4 beam;    // transmittance without scattered light
 
-uniform sampler2D surface_map;
-uniform ivec2 picture_size;
-uniform int cloud_scale;
 uniform sampler2D layer_light_0, layer_light_1, layer_light_2, layer_light_3;  // of march.frag.glsl
-
-const float kToSpace_km = 1e3;
 
 // The air up to the places where a ray leaves an interface.
 struct InterfaceAir {
@@ -31,7 +25,7 @@ struct InterfaceAir {
 // Returns the factor on single scattering, and on other light in the air.
 vec4 AirFactor(InterfaceAir of, int stretch, AirTo air) {
   int number = of.number[stretch];
-  return cloud_interface[number].z * air.single + cloud_diffuse[number] * air.diffuse;
+  return cloud_interface[number].y * air.single + cloud_diffuse[number] * air.diffuse;
 }
 
 InterfaceAir InterfacesOn(vec3 direction) {
@@ -50,7 +44,7 @@ InterfaceAir InterfacesOn(vec3 direction) {
                     : DistanceDownTo(h, mu, z, PLANET_RADIUS);
     of.distance_km[i] = is_there ? d : 1e6;
     of.number[i + 1] = is_there ? next : of.number[i];
-    AirTo air = AirToPoint(direction, min(of.distance_km[i], 1e3));
+    AirTo air = AirToPoint(direction, min(of.distance_km[i], kToSpace_km));
     of.single[i] = air.single;
     of.diffuse[i] = air.diffuse;
   }
@@ -158,7 +152,7 @@ vec4 AddedOn(vec3 direction, float length_km, CloudScreens screens, bool is_key)
   InterfaceAir interfaces = InterfacesOn(direction);
   // Tables of the air end above land, so that air behind the last interface of a ray to space is
   // that of a clear sky.
-  AirTo whole = AirToPoint(direction, min(length_km, 1e3));
+  AirTo whole = AirToPoint(direction, min(length_km, kToSpace_km));
   vec4 added = length_km < kToSpace_km
                    ? AirInShadow(interfaces, length_km, whole) - (whole.single + whole.diffuse)
                    : ShadowedBefore(interfaces);
@@ -175,17 +169,12 @@ vec4 AddedOn(vec3 direction, float length_km, CloudScreens screens, bool is_key)
 }
 
 void main() {
-  ivec2 pixel = min(ivec2(gl_FragCoord.xy) * cloud_scale + cloud_scale / 2, picture_size - 1);
-  vec3 direction = ViewDirection((2.0 * vec2(pixel) + 1.0) / vec2(picture_size) - 1.0);
-  float distance_m = texelFetch(surface_map, pixel, 0).w;
-  float length_km = distance_m > 0.0        ? 1e-3 * distance_m
-                    : SeesPlanet(direction) ? PlanetDistance(direction)
-                                            : 1e3;
+  CloudMapRay ray = RayOfCloudMap();
   CloudScreens screens = ScreensOn(ivec2(gl_FragCoord.xy));
-  vec4 added = AddedOn(direction, length_km, screens, true);
+  vec4 added = AddedOn(ray.direction, ray.length_km, screens, true);
 #ifdef TWO_LIGHTS
   of_other = true;
-  added += AddedOn(direction, length_km, screens, false);
+  added += AddedOn(ray.direction, ray.length_km, screens, false);
 #endif
   float left = 1.0, unscattered = 1.0;
   for (int n = 0; n < CLOUD_LAYERS; ++n) {

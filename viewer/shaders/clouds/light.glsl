@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What clouds leave of the light of the sky, and what they add to it: CloudsBlock of cloud_textures.h.
+// Clouds dim the light of sun and sky and add to it, by the values of CloudsBlock of cloud_textures.h.
 // Defined before this text: CLOUD_LAYERS. A place is given in the flat frame of the clouds relative
 // to the eye: metres east and north along the ground, and the altitude [m].
 //
@@ -9,7 +9,7 @@
 
 layout(std140) uniform Clouds {
   vec4 cloud_turn;   // cosine and sine from the eye's axes to those of the clouds; share of the new
-                     // clouds; 1 if the eye is above all of them
+                     // clouds
   vec4 cloud_place[2 * MOST_CLOUD_LAYERS];   // of the eye in the lattice [m]; inverse sides [1/m]
   vec4 cloud_levels[2 * MOST_CLOUD_LAYERS];  // lowest node of light [m]; levels per metre; the first
                                              // level, and their number

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light that one layer of clouds scatters into a ray, as CloudGather of the renderer has it, from the
+// Light that one layer of clouds scatters into a ray, as in CloudGather of the renderer, from the
 // textures of cloud_texels.h. Defined before this text: CLOUD_STEPS, the most steps of a ray, and
 // CLOUD_SUN_STEPS, the number of samples of the shape towards the sun.
 
@@ -15,9 +15,9 @@ uniform sampler3D cloud_light;       // transmittance to the light
 uniform int layer_number;   // in the block Clouds
 uniform vec4 layer_shape;   // voxels per metre; altitude of the lowest brick [m]; metres per brick;
                             // cells along z
-uniform vec4 layer_cells;   // of light: base over the lowest brick [m], inverse height of all [1/m];
-                            // scaled albedo w'; base of the table of extinction, unused
-uniform vec3 layer_texel;  // of the atlas: inverse sides
+uniform vec3 layer_cells;   // of light: base over the lowest brick [m], inverse height of all [1/m];
+                            // scaled albedo w'
+uniform vec3 layer_texel;   // of the atlas: inverse sides
 uniform vec3 layer_voxels;  // of a period
 uniform vec2 layer_periods_per_voxel;
 uniform vec3 beam_towards;  // unit vector to the light of the solution, in the frame of the clouds
