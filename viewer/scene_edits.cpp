@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "renderer/clouds/cloud_options.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_clouds.h"
@@ -71,6 +72,9 @@ void SceneEdits::BeginHashing() {
 }
 
 void SceneEdits::Use(const std::vector<SceneCloud>& clouds) {
+  for (const SceneCloud& layer : OverEllipsoid(clouds, GroundAt(scene_.place))) {
+    if (layer.grid.empty()) CheckCloudOptions(layer.options);
+  }
   RequireCloudsFit(clouds, MemoryOfMachine());
   scene_.clouds = clouds;
   changes_.clouds = std::make_shared<const std::vector<SceneCloud>>(clouds);

@@ -34,7 +34,8 @@ class SceneEdits {
   /// Keeps a reference to the painter, which draws the scene with this land.
   SceneEdits(const Scene& scene, const LandSource& land, SkyPainter& painter);
 
-  /// Changes the clouds. Throws InputError if their fields may need more memory than there is.
+  /// Changes the clouds. Throws InputError if an option is out of its range over the ground of the
+  /// scene, or if their fields may need more memory than there is.
   void Use(const std::vector<SceneCloud>& clouds);
   /// Changes the air.
   /// @param place  of the eye: the medium lies on the sphere under it.

@@ -263,7 +263,7 @@ void DrawAir(const PanelChange& change) {
 
 namespace {
 
-// Draws the controls of one layer, and returns the changed layer; nothing if nothing changes.
+// Draws the controls of one layer and returns the changed layer, if it changes.
 std::optional<CloudOptions> LayerControls(const CloudOptions& layer) {
   CloudOptions changed = layer;
   const auto [least, most] = CoversOf(layer.genus);
@@ -271,8 +271,11 @@ std::optional<CloudOptions> LayerControls(const CloudOptions& layer) {
     value = to.value_or(value);
   };
   set(changed.cover, Slider("cover", layer.cover, {least, most, "%.2f"}));
-  set(changed.base_altitude_m, Slider("base", layer.base_altitude_m, {0.0, 11000.0, "%.0f m"}));
-  set(changed.depth_m, Slider("depth", layer.depth_m, {100.0, 4000.0, "%.0f m"}));
+  const auto [lowest_m, highest_m] = CloudRanges::kBase_m;
+  const double most_m = IsOfIce(layer.genus) ? highest_m : kHighestWaterBase_m;
+  set(changed.base_altitude_m, Slider("base", layer.base_altitude_m, {lowest_m, most_m, "%.0f m"}));
+  const auto [thinnest_m, deepest_m] = CloudRanges::kDepth_m;
+  set(changed.depth_m, Slider("depth", layer.depth_m, {thinnest_m, deepest_m, "%.0f m"}));
   set(changed.wind_m_per_s.x,
       Slider("wind to the east", layer.wind_m_per_s.x, {-50.0, 50.0, "%.0f m/s"}));
   set(changed.wind_m_per_s.y,
