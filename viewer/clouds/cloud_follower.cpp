@@ -15,12 +15,14 @@
 namespace alpenglow::viewer {
 namespace {
 
-// Clouds are made again when the light has turned by this angle, or after this time.
-constexpr double kTurned_rad = 0.5 * kRadiansPerDegree, kPassed_s = 60.0;
+// Clouds are made again when the light has turned by this angle, or after this time. Below the horizon,
+// it also lights other clouds when the eye has climbed by this height.
+constexpr double kTurned_rad = 0.5 * kRadiansPerDegree, kPassed_s = 60.0, kClimbed_m = 500.0;
 // The rest after a computation, in units of its time: drawing needs the processors.
 constexpr double kRest = 1.0;
-
-glm::vec4 MeanOf(const Spectrum& light) { return GpuBandsOf(light); }
+// Other clouds are made when they have stayed the same for this time, so that no computation begins for
+// values of a slider that a user passes.
+constexpr double kSettle_s = 0.3;
 
 CloudColours ColoursOf(const LitClouds& clouds, const CloudTexels& texels) {
   CloudColours colours;
@@ -28,52 +30,55 @@ CloudColours ColoursOf(const LitClouds& clouds, const CloudTexels& texels) {
     const AltitudeRange& range = texels.layer[i].range;
     const LitClouds::LightAround low = clouds.AroundLayer(i, {0.0, 0.0, range.low_m});
     const LitClouds::LightAround high = clouds.AroundLayer(i, {0.0, 0.0, range.high_m});
-    colours.sky_low.push_back(MeanOf(low.sky));
-    colours.sky_high.push_back(MeanOf(high.sky));
-    colours.ground_low.push_back(MeanOf(low.ground));
-    colours.ground_high.push_back(MeanOf(high.ground));
+    colours.sky_low.push_back(GpuBandsOf(low.sky));
+    colours.sky_high.push_back(GpuBandsOf(high.sky));
+    colours.ground_low.push_back(GpuBandsOf(low.ground));
+    colours.ground_high.push_back(GpuBandsOf(high.ground));
   }
   for (const LitClouds::InterfaceLight& light : clouds.Interfaces()) {
     colours.interfaces.push_back({static_cast<float>(std::max(light.low_m, -1e6)), light.air_left,
-                                  MeanOf(light.added), MeanOf(light.diffuse)});
+                                  GpuBandsOf(light.added), GpuBandsOf(light.diffuse)});
   }
   return colours;
 }
 
 }  // namespace
 
-/// Makes clouds. It keeps the fields and solutions of the last time and light, which another medium
-/// does not change.
+/// Makes clouds. It keeps the fields of the last time and their solutions, which other air of the same
+/// planet does not change.
 class CloudFollower::Maker {
  public:
   Maker(const LocalFrame& frame, double ground_m)
       : ground_{frame, std::nullopt, 0.0, "", true}, ground_m_(ground_m) {}
 
   MadeClouds operator()(const CloudMoment& moment) {
-    const Medium& medium = moment.air->medium();
-    if (!IsKept(moment)) {
+    if (!HasFieldsOf(moment)) {
       solved_.reset();
-      CloudsByTime clouds(*moment.scene, ground_m_, medium.planet_radius_m);
-      // An eye so high sees every layer in any light, so that all are solved.
-      constexpr double kAnyAltitude_m = 1e12;
-      solved_ = clouds.At(moment.now, {moment.light.direction.seen, kAnyAltitude_m});
-      texels_ = std::make_shared<const CloudTexels>(TexelsOfClouds(*solved_));
+      clouds_.emplace(*moment.scene, ground_m_, moment.air->medium().planet_radius_m);
       kept_ = moment;
     }
-    const SceneGeometry geometry(ground_, medium, false);
+    Solve(moment);
+    const SceneGeometry geometry(ground_, moment.air->medium(), false);
     const LitClouds lit(solved_, geometry, *moment.air, moment.light);
     return {moment, texels_, ColoursOf(lit, *texels_)};
   }
 
  private:
-  [[nodiscard]] bool IsKept(const CloudMoment& moment) const {
+  [[nodiscard]] bool HasFieldsOf(const CloudMoment& moment) const {
     return kept_ && kept_->scene == moment.scene && SecondsBetween(kept_->now, moment.now) == 0.0 &&
-           kept_->light.direction == moment.light.direction;
+           kept_->air->medium().planet_radius_m == moment.air->medium().planet_radius_m;
+  }
+  void Solve(const CloudMoment& moment) {
+    const std::shared_ptr<const SolvedClouds> before = solved_;
+    solved_ = clouds_->At(moment.now, {moment.light.direction.seen, moment.eye_altitude_m});
+    if (solved_ == before) return;
+    texels_ = std::make_shared<const CloudTexels>(TexelsOfClouds(*solved_));
   }
 
   SceneGround ground_;  // without terrain
   double ground_m_;
-  std::optional<CloudMoment> kept_;
+  std::optional<CloudMoment> kept_;  // of clouds_
+  std::optional<CloudsByTime> clouds_;
   std::shared_ptr<const SolvedClouds> solved_;
   std::shared_ptr<const CloudTexels> texels_;
 };
@@ -96,15 +101,21 @@ std::size_t CloudFollower::layers() const {
   return std::max(shown_->textures->layers(), earlier_ ? earlier_->textures->layers() : 0);
 }
 
-void CloudFollower::Use(const std::vector<SceneCloud>& clouds) {
+void CloudFollower::Use(const std::vector<SceneCloud>& clouds, double ground_m) {
+  if (!maker_) ground_m_ = ground_m;
   Scene other = *scene_;
   other.clouds = clouds;
   scene_ = std::make_shared<const Scene>(std::move(other));
+  settles_s_ = kSettle_s;
+  if (maker_) maker_->Forget();
   Begin();
 }
 
 bool CloudFollower::Suits(const CloudMoment& made, const CloudMoment& wanted) {
+  const bool is_up =
+      wanted.light.direction.seen.z >= std::sin(kLowestCloudLight_deg * kRadiansPerDegree);
   return made.air == wanted.air && made.scene == wanted.scene &&
+         (is_up || std::abs(made.eye_altitude_m - wanted.eye_altitude_m) < kClimbed_m) &&
          made.light.body == wanted.light.body &&
          std::abs(SecondsBetween(made.now, wanted.now)) < kPassed_s &&
          glm::length(made.light.direction.seen - wanted.light.direction.seen) < kTurned_rad;
@@ -118,7 +129,7 @@ CloudMoment CloudFollower::MomentOf(const std::shared_ptr<const SolvedAir>& air,
   };
   DistantLight from_scene = light;
   from_scene.direction = {turned(light.direction.seen), turned(light.direction.for_air)};
-  return {air, scene_, now, from_scene};
+  return {air, scene_, now, from_scene, eye.height_m};
 }
 
 void CloudFollower::TakeOver(MadeClouds made) {
@@ -144,13 +155,14 @@ void CloudFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const Pl
     return;
   }
   share_ = std::min(share_ + seconds / kFade_s, 1.0);
+  settles_s_ = std::max(settles_s_ - seconds, 0.0);
   if (share_ >= 1.0) earlier_ = nullptr;
   if (!coming_) {
     if (std::optional<MadeClouds> made = maker_->Poll()) {
+      if (made->of.scene == scene_) maker_->RestFor(kRest * maker_->making_s());
       TakeOver(std::move(*made));
-      maker_->RestFor(kRest * maker_->making_s());
     }
-    maker_->RequestWhenIdle(MomentOf(air, eye, now, light));
+    if (settles_s_ <= 0.0) maker_->RequestWhenIdle(MomentOf(air, eye, now, light));
   }
   if (coming_ && coming_->textures->UploadOne(kUploadUnit) && share_ >= 1.0) Show();
 }
@@ -251,7 +263,7 @@ CloudsBlock CloudFollower::BlockFor(const Place& eye, const UtcTime& now) const 
     const CloudColours::Interface& of =
         colours.interfaces[std::min(i, colours.interfaces.size() - 1)];
     const float low_m = i < colours.interfaces.size() ? of.low_m : 1e9F;
-    block.interfaces[i] = {low_m, of.left, of.left, 0.0};
+    block.interfaces[i] = {low_m, of.left, 0.0, 0.0};
     block.added[i] = of.added;
     block.diffuse[i] = of.diffuse;
   }

@@ -24,12 +24,13 @@
 
 namespace alpenglow::viewer {
 
-/// What the light of clouds depends on.
+/// Time, place and light for which clouds are made.
 struct CloudMoment {
   std::shared_ptr<const SolvedAir> air;  // on the sphere under the scene
   std::shared_ptr<const Scene> scene;
   UtcTime now;
-  DistantLight light;  // in the frame of the scene
+  DistantLight light;     // in the frame of the scene
+  double eye_altitude_m;  // the clouds in its sight are lit, see CloudsByTime::Light
 };
 
 /// Colours of the light of clouds, for unit solar irradiance.
@@ -57,7 +58,7 @@ struct EyeInClouds {
 
 class CloudFollower {
  public:
-  /// @param ground  of the scene.
+  /// @param ground  of the scene, if that has clouds.
   CloudFollower(const Scene& scene, const SceneGround& ground);
 
   /// Returns whether the scene has clouds.
@@ -67,8 +68,12 @@ class CloudFollower {
   /// Returns the number of layers that are drawn.
   [[nodiscard]] std::size_t layers() const;
 
-  /// Replaces the clouds of the scene. The new ones fade in when they are made.
-  void Use(const std::vector<SceneCloud>& clouds);
+  /// Replaces the clouds of the scene. The new ones are made as soon as they have not been replaced for
+  /// a moment, and then fade in.
+  /// @param ground_m  height of the ground at the scene's place, for the first clouds of a scene that
+  ///     began without any.
+  void Use(const std::vector<SceneCloud>& clouds, double ground_m);
+  [[nodiscard]] const Place& place() const { return scene_->place; }
   [[nodiscard]] const std::vector<SceneCloud>& clouds() const { return scene_->clouds; }
 
   /// Takes finished clouds and requests missing ones. Call it once a frame.
@@ -115,6 +120,7 @@ class CloudFollower {
   double ground_m_ = 0.0;  // height of the ground at the scene's place
   std::shared_ptr<Shown> coming_, shown_, earlier_;
   double share_ = 1.0;
+  double settles_s_ = 0.0;  // until changed clouds are requested
   std::optional<AsyncValue<CloudMoment, MadeClouds>> maker_;
 };
 

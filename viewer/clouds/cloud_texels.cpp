@@ -18,7 +18,6 @@ namespace alpenglow::viewer {
 namespace {
 
 constexpr int kTilesAcross = 56;  // 504 texels: every driver has 3D textures of this size
-constexpr double kPerKilometre = 1000.0;
 constexpr double kLeastPeakDepth = 1e-3;
 
 HalfBits Half(double value) { return glm::packHalf1x16(static_cast<float>(value)); }
@@ -124,7 +123,7 @@ void FillExtinction(const CloudField& field, CloudLayerTexels& layer) {
       const double per_m = is_grid ? field.largest_extinction_per_m() * std::max(depth_m, 0.0) /
                                          (kMostCode - kSurfaceCode)
                                    : field.matter().edge.FractionAt(depth_m) * core_per_m;
-      layer.extinction.push_back(Half(kPerKilometre * per_m));
+      layer.extinction.push_back(Half(kMetresPerKilometre * per_m));
     }
   }
 }
@@ -279,13 +278,15 @@ double LevelStep_m(const CloudSunDepths& sun) {
                     CloudSunTexels::kLevel_m);
 }
 
-/// Returns the levels of one layer. A light without a sheared map has levels down to the ground.
+/// Returns the levels of one layer. A light without a sheared map has levels down to the ground, and a
+/// layer that no light reaches has one level without shadow.
 CloudSunTexels::Layer LevelsOf(const CloudLight& light, int first) {
   const CloudField& field = light.field();
   CloudSunTexels::Layer levels{.first = first,
                                .low_m = field.base_altitude_m(),
                                .slope = glm::dvec2(0.0),
                                .clear_from_m = field.top_altitude_m()};
+  if (light.sun().IsUnlit()) return levels;
   if (const CloudSunMap* map = light.sun().map()) {
     levels.slope = glm::dvec2(map->to_sun()) / map->to_sun().z;
   } else {
@@ -301,11 +302,11 @@ CloudSunTexels::Layer LevelsOf(const CloudLight& light, int first) {
 
 /// Returns the transmittance at a node.
 double AtNode(const CloudSunDepths& sun, const glm::dvec3& point) {
-  if (const CloudSunMap* map = sun.map()) return map->Transmittance(point);
-  return sun.low_map()->TransmittanceAsAtPlace(point);
+  const CloudLowSunMap* low = sun.low_map();
+  return low != nullptr ? low->TransmittanceAsAtPlace(point) : sun.Transmittance(point);
 }
 
-/// Returns the transmittances of a layer at every `step`-th node of a level, and linear ones between.
+/// Writes the transmittances of a layer at the nodes of a level.
 void FillLevel(const CloudLight& light, const CloudSunTexels::Layer& layer, int level, int nodes,
                HalfBits* texel) {
   const CloudLattice& lattice = light.field().lattice();

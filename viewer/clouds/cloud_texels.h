@@ -13,10 +13,10 @@
 // holds the four components of a cell, and a second table the four functions
 // b_k(d) = sum_lm e_k,lm a_lm(d) / (w' chi'_l), so that J = sum_k c_k b_k(d) for any direction.
 //
-// Optical depth to the light: transmittances at nodes about 40 m apart, under a low sun 10 m
-// in height. Under a high sun nodes are
-// sheared along its direction as in cloud_sun_map.h, so that shadows are as sharp on the ground as in
-// the clouds. All layers share one texture, from bottom to top.
+// Optical depth to the light: transmittances at nodes whose levels are 10 m to 80 m apart. Under a high
+// sun nodes are sheared along its direction as in cloud_sun_map.h, so that shadows are as sharp on the
+// ground as in the clouds. All layers share one texture, from bottom to top. A layer that no light
+// reaches (CloudSunDepths::IsUnlit) has one level without shadow.
 #pragma once
 
 #include <array>

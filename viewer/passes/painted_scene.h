@@ -117,7 +117,9 @@ class PaintedScene {
  private:
   void Take(const Medium& medium) { air_.Replace(medium); }
   void Take(const LandSource& land);
-  void Take(const std::vector<SceneCloud>& clouds) { clouds_.Use(clouds); }
+  void Take(const std::vector<SceneCloud>& clouds) {
+    clouds_.Use(clouds, land_->ground().HeightUnder(clouds_.place()).value_or(0.0));
+  }
   /// Followers either do their work in the background (Update) or complete it (WaitUntilReady).
   enum class Pace { kFollow, kWait };
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);

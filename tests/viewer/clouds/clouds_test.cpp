@@ -5,18 +5,22 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
 #include <memory>
+#include <optional>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
-#include "renderer/effects/effect_choice.h"
 #include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/picture/picture_layers.h"
+#include "renderer/picture/reference_picture.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_clouds.h"
 #include "renderer/scene/scene_options.h"
@@ -24,6 +28,7 @@
 #include "tests/fixtures/sanitized.h"
 #include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/shaders/headless.h"
+#include "viewer/clouds/cloud_follower.h"
 #include "viewer/clouds/cloud_texels.h"
 #include "viewer/passes/sky_painter.h"
 
@@ -46,10 +51,10 @@ Scene CloudyScene(const std::string& clouds, const char* time) {
   return scene;
 }
 
-SolvedClouds SolvedCumulus() {
+SolvedClouds SolvedCumulus(const glm::dvec3& to_light = glm::normalize(glm::dvec3(0.5, 0.3, 0.8))) {
   const Scene scene = CloudyScene("cumulus 0.3", kMorning);
   CloudsByTime clouds(scene, 0.0, 6371e3);
-  return *clouds.At(*scene.time, {glm::normalize(glm::dvec3(0.5, 0.3, 0.8))});
+  return *clouds.At(*scene.time, {to_light});
 }
 
 double Value(HalfBits bits) { return static_cast<double>(glm::unpackHalf1x16(bits)); }
@@ -171,39 +176,33 @@ TEST(CloudTexels, NodesOfLightHaveTheTransmittanceOfTheMap) {
   }
 }
 
+TEST(CloudTexels, ALightThatNoCloudSeesCastsNoShadow) {
+  const SolvedClouds clouds = SolvedCumulus({0.0, 0.0, -1.0});
+  ASSERT_TRUE(clouds.light.front().sun().IsUnlit());
+  const CloudTexels texels = TexelsOfClouds(clouds);
+  const auto is = [](double expected) {
+    return [expected](HalfBits bits) { return Value(bits) == expected; };
+  };
+  EXPECT_EQ(texels.sun.levels, 1);
+  EXPECT_TRUE(std::ranges::all_of(texels.sun.transmittance, is(1.0)));
+  EXPECT_TRUE(std::ranges::all_of(texels.layer.front().sun, is(0.0)));
+  EXPECT_FALSE(std::ranges::all_of(texels.layer.front().sky, is(0.0)));
+}
+
 constexpr struct CloudPictureSize {
   int width, height;
 } kCloudPicture{160, 90}, kSmallCloudPicture = tests::ScaledDown(kCloudPicture, {48, 27});
 constexpr int kCloudSamples = 4;
 
-// The differences of pixels with clouds.
-ErrorStatistics DifferenceInClouds(const HdrImage& reference, const HdrImage& painted) {
-  const std::vector<bool> edges = EdgesOf(reference);
-  const double floor = ChangeFloor(reference);
-  std::vector<double> changes;
-  for (const ImageLayer& layer : reference.layers) {
-    if (layer.name != "clouds.T") continue;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      if (!edges[i] && layer.values[i] < 0.9F)
-        changes.push_back(PixelChange(reference.rgb[i], painted.rgb[i], floor));
-    }
-  }
-  return ErrorStatistics(std::move(changes));
-}
-
-/// A view of clouds by the renderer's fast method and by the painter at high quality.
+/// Returns the differences of pixels with clouds between a view by the renderer's fast method and by the
+/// painter at high quality.
 ErrorStatistics ViewDifference(const Scene& scene, double height_m, double heading_deg,
                                double pitch_deg) {
   CameraPose eye{scene.place, heading_deg * kRadiansPerDegree, pitch_deg * kRadiansPerDegree, 0.0,
                  70.0 * kRadiansPerDegree};
   eye.place.height_m = height_m;
   const PaintedView view{eye, *scene.time, kSmallCloudPicture.width, kSmallCloudPicture.height};
-  RenderSettings settings;
-  settings.width = view.width;
-  settings.height = view.height;
-  settings.samples_per_pixel = kCloudSamples;
-  settings.filter = PixelFilter::Kind::kBox;
-  settings.layers = LayersOfEdges();
+  RenderSettings settings = ComparisonSettings(view.width, view.height, kCloudSamples);
   settings.layers.push_back(PictureLayer::kClouds);
   CameraSample camera(view.now);
   camera.poses = {eye};
@@ -212,7 +211,69 @@ ErrorStatistics ViewDifference(const Scene& scene, double height_m, double headi
                      tests::SharedAirOf(scene));
   painter.WaitUntilReady(view, kCloudSamples);
   painter.Paint(view, kCloudSamples);
-  return DifferenceInClouds(reference, painter.picture().Read());
+  return DifferenceOf(reference, painter.picture().Read(), CloudyPixels::kCloudy).value();
+}
+
+/// Follows clouds over ground without terrain, lit from 50 degrees above the horizon.
+class FollowedClouds {
+ public:
+  explicit FollowedClouds(const Scene& scene, double ground_m = 0.0)
+      : scene_(scene),
+        clouds_(scene, {LocalFrame(EllipsoidOf(scene.medium), {46.5, 8.0, 0.0}), std::nullopt, 0.0,
+                        "", true}),
+        ground_m_(ground_m) {}
+
+  [[nodiscard]] const CloudFollower& operator*() const { return clouds_; }
+  [[nodiscard]] const CloudFollower* operator->() const { return &clouds_; }
+  void Use(const std::string& clouds) {
+    clouds_.Use(CloudyScene(clouds, kMorning).clouds, ground_m_);
+  }
+  void Follow(double seconds) { clouds_.Follow(air_, scene_.place, *scene_.time, light_, seconds); }
+  void WaitUntilReady() { clouds_.WaitUntilReady(air_, scene_.place, *scene_.time, light_); }
+  [[nodiscard]] const CloudOptions& shown() const {
+    return clouds_.shown().made.of.scene->clouds.front().options;
+  }
+
+ private:
+  Scene scene_;
+  CloudFollower clouds_;
+  double ground_m_;
+  std::shared_ptr<const SolvedAir> air_ = std::shared_ptr<const SolvedAir>(
+      tests::SharedAirOf(scene_), &tests::SharedAirOf(scene_)->air);
+  glm::dvec3 to_light_{0.6, 0.2, std::sqrt(0.6)};
+  DistantLight light_{LightSource::kSun, {to_light_, to_light_}, 0.0047, Spectrum(1.0)};
+};
+
+class CloudsOfAScene : public tests::Headless {};
+
+TEST_F(CloudsOfAScene, AreNotMadeForValuesThatASliderPasses) {
+  FollowedClouds clouds(CloudyScene("cumulus 0.2", kMorning));
+  clouds.WaitUntilReady();
+  const CloudOptions first = clouds.shown();
+  constexpr double kFrame_s = 0.05;
+  for (const char* passed : {"cumulus 0.25", "cumulus 0.3", "cumulus 0.35"}) {
+    clouds.Use(passed);
+    clouds.Follow(kFrame_s);
+  }
+  while (clouds.shown() == first) {
+    clouds.Follow(kFrame_s);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(clouds.shown().cover, 0.35);
+}
+
+// Returns the lowest altitude of clouds [m] that a scene without any gets later, over ground of a height.
+double LowestCloudOver(double ground_m) {
+  FollowedClouds clouds(CloudyScene("none", kMorning), ground_m);
+  EXPECT_FALSE(clouds->IsShown());
+  clouds.Use("cumulus 0.2");
+  clouds.WaitUntilReady();
+  return clouds->shown().made.texels->layer.front().range.low_m;
+}
+
+TEST_F(CloudsOfAScene, ThatBeganWithoutAnyLieOverItsGround) {
+  constexpr double kGround_m = 700.0;
+  EXPECT_NEAR(LowestCloudOver(kGround_m) - LowestCloudOver(0.0), kGround_m, 1e-6);
 }
 
 class CloudsInPictures : public tests::Headless {};
