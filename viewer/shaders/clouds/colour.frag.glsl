@@ -64,17 +64,15 @@ vec4 AirInShadow(InterfaceAir of, float distance_km, AirTo air) {
   return sum + AirFactor(of, last, air);
 }
 
-// Returns what clouds add to the light of the air up to the last interface that a ray reaches.
-vec4 ShadowedBefore(InterfaceAir of) {
-  vec4 sum = vec4(0.0), single = vec4(0.0), diffuse = vec4(0.0);
-  for (int i = 0; i < CLOUD_LAYERS; ++i) {
-    if (of.distance_km[i] >= kToSpace_km) continue;
-    AirTo part = AirTo(of.single[i] - single, of.diffuse[i] - diffuse, vec4(1.0));
-    sum += AirFactor(of, i, part) - (part.single + part.diffuse);
-    single = of.single[i];
-    diffuse = of.diffuse[i];
-  }
-  return sum;
+// Returns the light of the air on a ray to space behind clouds' shadows.
+// @param inside  up to the end of the tables. Behind it, air scatters light once and more often in the
+//     same proportion.
+vec4 AirToSpace(InterfaceAir of, vec3 direction, AirTo inside) {
+  vec4 both = inside.single + inside.diffuse;
+  vec4 share = inside.diffuse / max(both, vec4(1e-20));
+  vec4 behind = max(SkyRadiance(direction) - both, vec4(0.0));
+  AirTo rest = AirTo((1.0 - share) * behind, share * behind, vec4(1.0));
+  return AirInShadow(of, kToSpace_km, inside) + AirFactor(of, CLOUD_LAYERS, rest) - behind;
 }
 
 // Returns the light of the beam, the sky and the ground that a screen scatters to the eye.
@@ -150,12 +148,10 @@ CloudScreens ScreensOn(ivec2 texel) {
 // @param is_key  whether it lights the clouds, too.
 vec4 AddedOn(vec3 direction, float length_km, CloudScreens screens, bool is_key) {
   InterfaceAir interfaces = InterfacesOn(direction);
-  // Tables of the air end above land, so that air behind the last interface of a ray to space is
-  // that of a clear sky.
   AirTo whole = AirToPoint(direction, min(length_km, kToSpace_km));
-  vec4 added = length_km < kToSpace_km
-                   ? AirInShadow(interfaces, length_km, whole) - (whole.single + whole.diffuse)
-                   : ShadowedBefore(interfaces);
+  vec4 added = (length_km < kToSpace_km ? AirInShadow(interfaces, length_km, whole)
+                                        : AirToSpace(interfaces, direction, whole)) -
+               (whole.single + whole.diffuse);
   for (int n = 0; n < CLOUD_LAYERS; ++n) {
     if (n >= screens.count) break;
     vec4 of = screens.gathered[n];
