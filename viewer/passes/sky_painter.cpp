@@ -67,6 +67,7 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   Begin("update");
   const std::shared_ptr<const FrameSky> sky = SkyAt(view.eye.place, view.now);
   scene_.Update(view, *sky, seconds);
+  continues_ = true;
   stars_.Follow(view, *sky, scene_.air().air());
   // After a jump in time into the night, wait for the first map.
   if (HasNightSkyMap()) night_sky_map_.Follow(view, scene_.air().air(), !night_sky_map_.HasAny());
@@ -75,6 +76,7 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
 void SkyPainter::WaitUntilReady(const PaintedView& view, int samples) {
   const std::shared_ptr<const FrameSky> before = SkyAt(view.eye.place, view.now);
   scene_.WaitUntilReady(view, before->lights, samples);
+  continues_ = false;
   lamps_.WaitForPlans();
   // The medium may be another one now.
   const std::shared_ptr<const FrameSky> sky = SkyAt(view.eye.place, view.now);
@@ -142,12 +144,27 @@ void SkyPainter::PaintShafts(const Frame& frame) {
                     frame.view.height, kSurfaceUnit, kShadeUnit, scene_.sizes().shade.detail);
 }
 
+namespace {
+
+// Returns the matrix from directions to points of a picture, times the distance along the view.
+glm::mat3 ScreenFromDirection(const PaintedView& view) {
+  const ViewAxes axes = AxesOf(view);
+  const auto along = [](const glm::dvec3& axis) { return axis / glm::dot(axis, axis); };
+  const glm::dvec3 x = along(axes.right) - view.part.x * view.part.z * axes.forward;
+  const glm::dvec3 y = along(axes.up) - view.part.y * view.part.w * axes.forward;
+  return glm::transpose(glm::mat3(x, y, axes.forward));
+}
+
+}  // namespace
+
 void SkyPainter::PaintClouds(const Frame& frame) {
   if (!scene_.clouds().IsShown()) return;
   Begin("clouds");
   const auto& [width, height] = std::pair{frame.view.width, frame.view.height};
+  const CloudFrame gathered{width, height, ScreenFromDirection(frame.view),
+                            frame.view.eye.place.height_m, std::exchange(continues_, false)};
   cloud_pass_.Gather(scene_.clouds(),
-                     scene_.clouds().BlockFor(frame.view.eye.place, frame.view.now), width, height,
+                     scene_.clouds().BlockFor(frame.view.eye.place, frame.view.now), gathered,
                      scene_.sizes().clouds);
   Begin("cloud colours");
   cloud_pass_.Colour(scene_.clouds(), frame.lights().size() > 1, width, height);
@@ -210,19 +227,6 @@ PictureStage SkyPainter::StageOfDisks() const {
   stage.cloud_layers = static_cast<int>(scene_.clouds().layers());
   return stage;
 }
-
-namespace {
-
-// Returns the matrix from directions to points of a picture, times the distance along the view.
-glm::mat3 ScreenFromDirection(const PaintedView& view) {
-  const ViewAxes axes = AxesOf(view);
-  const auto along = [](const glm::dvec3& axis) { return axis / glm::dot(axis, axis); };
-  const glm::dvec3 x = along(axes.right) - view.part.x * view.part.z * axes.forward;
-  const glm::dvec3 y = along(axes.up) - view.part.y * view.part.w * axes.forward;
-  return glm::transpose(glm::mat3(x, y, axes.forward));
-}
-
-}  // namespace
 
 // @param shares  factors of the light of sun and moon.
 void SkyPainter::DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares) {

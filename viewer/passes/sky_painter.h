@@ -159,6 +159,7 @@ class SkyPainter {
   std::optional<RenderTarget> picture_;
   FrameSkyFollower sky_;
   std::optional<Frame> painted_;  // by the last Paint
+  bool continues_ = false;        // the next picture continues those of earlier updates
   PassTimer* timer_ = nullptr;
 };
 

@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/math/constants.h"
@@ -194,10 +195,10 @@ constexpr struct CloudPictureSize {
 } kCloudPicture{160, 90}, kSmallCloudPicture = tests::ScaledDown(kCloudPicture, {48, 27});
 constexpr int kCloudSamples = 4;
 
-/// Returns the differences of pixels with clouds between a view by the renderer's fast method and by the
-/// painter at high quality.
+/// Returns the differences of pixels between a view by the renderer's fast method and by the painter at
+/// high quality.
 ErrorStatistics ViewDifference(const Scene& scene, double height_m, double heading_deg,
-                               double pitch_deg) {
+                               double pitch_deg, CloudyPixels pixels = CloudyPixels::kCloudy) {
   CameraPose eye{scene.place, heading_deg * kRadiansPerDegree, pitch_deg * kRadiansPerDegree, 0.0,
                  70.0 * kRadiansPerDegree};
   eye.place.height_m = height_m;
@@ -211,7 +212,7 @@ ErrorStatistics ViewDifference(const Scene& scene, double height_m, double headi
                      tests::SharedAirOf(scene));
   painter.WaitUntilReady(view, kCloudSamples);
   painter.Paint(view, kCloudSamples);
-  return DifferenceOf(reference, painter.picture().Read(), CloudyPixels::kCloudy).value();
+  return DifferenceOf(reference, painter.picture().Read(), pixels).value();
 }
 
 /// Follows clouds over ground without terrain, lit from 50 degrees above the horizon.
@@ -297,12 +298,96 @@ TEST_F(CloudsInPictures, FromAboveAreThoseOfTheRenderer) {
   EXPECT_LT(difference.Quantile(0.99), kMostOf99);
 }
 
+// Clouds below brighten it by a tenth.
+TEST_F(CloudsInPictures, TheSkyOverThemIsThatOfTheRenderer) {
+  const Scene scene = CloudyScene("cumulus 0.3", kMorning);
+  EXPECT_LT(ViewDifference(scene, 3000.0, 200.0, 10.0, CloudyPixels::kClear).mean(), 0.03);
+}
+
 // Measured: 0.123 and 0.855. Rims of clouds are many times as bright as their shade towards the sun.
 TEST_F(CloudsInPictures, TowardsALowSunAreNearThoseOfTheRenderer) {
   const ErrorStatistics difference =
       ViewDifference(CloudyScene("cumulus 0.3", kEvening), 2.0, 295.0, 10.0);
   EXPECT_LT(difference.mean(), tests::ScaledDown(0.15, 0.3));
   EXPECT_LT(difference.Quantile(0.99), tests::ScaledDown(0.95, 1.5));
+}
+
+/// Draws a moving picture with clouds.
+class MovingClouds : public tests::Headless {
+ protected:
+  MovingClouds() : scene_(CloudyScene("cumulus 0.3", kMorning)) {}
+
+  /// Returns the view after a way to the north and a turn.
+  [[nodiscard]] PaintedView ViewAfter(double north_m, double turned_deg) const {
+    CameraPose eye{scene_.place, turned_deg * kRadiansPerDegree, 20.0 * kRadiansPerDegree, 0.0,
+                   70.0 * kRadiansPerDegree};
+    eye.place = LocalFrame(kWgs84, scene_.place).GeodeticFromEnu(Point<Enu>{{0.0, north_m, 0.0}});
+    eye.place.height_m = 1000.0;
+    return {eye, *scene_.time, kSmallCloudPicture.width, kSmallCloudPicture.height};
+  }
+  /// Draws a picture of its own.
+  HdrImage Alone(const PaintedView& view) {
+    painter().WaitUntilReady(view);
+    painter().Paint(view);
+    return painter().picture().Read();
+  }
+  /// Draws a frame that continues those before.
+  HdrImage Next(const PaintedView& view) {
+    constexpr double kFrame_s = 0.05;
+    painter().Update(view, kFrame_s);
+    painter().Paint(view);
+    return painter().picture().Read();
+  }
+  static ErrorStatistics Changes(const HdrImage& from, const HdrImage& to) {
+    std::vector<double> changes;
+    for (std::size_t i = 0; i < from.rgb.size(); ++i)
+      changes.push_back(PixelChange(from.rgb[i], to.rgb[i], ChangeFloor(from)));
+    return ErrorStatistics(std::move(changes));
+  }
+
+ private:
+  SkyPainter& painter() {
+    if (!painter_) {
+      painter_.emplace(scene_, LandSourceOf(scene_), ViewAfter(0.0, 0.0), SizesOf(Quality::kMedium),
+                       tests::SharedAirOf(scene_));
+    }
+    return *painter_;
+  }
+
+  Scene scene_;
+  std::optional<SkyPainter> painter_;
+};
+
+constexpr int kRounds = 4;  // frames in which all rays of a map are followed
+
+// Rays of the map around a place have a weight of 1e-4 each.
+TEST_F(MovingClouds, AStillViewHasTheLightOfAllRays) {
+  const HdrImage alone = Alone(ViewAfter(0.0, 0.0));
+  HdrImage next;
+  for (int i = 0; i <= kRounds; ++i) next = Next(ViewAfter(0.0, 0.0));
+  EXPECT_LT(Changes(alone, next).Largest(), 0.01);
+}
+
+TEST_F(MovingClouds, AnotherViewHasNoLightOfTheOneBefore) {
+  static_cast<void>(Alone(ViewAfter(0.0, 0.0)));
+  static_cast<void>(Next(ViewAfter(0.0, 0.0)));
+  for (const PaintedView& jump : {ViewAfter(0.0, 5.0), ViewAfter(500.0, 5.0)}) {
+    const HdrImage next = Next(jump);
+    EXPECT_LT(Changes(Alone(jump), next).Largest(), 0.01);
+  }
+}
+
+// Light that is three frames old has been interpolated in the map three times.
+TEST_F(MovingClouds, AFlightHasNearlyTheLightOfAllRays) {
+  constexpr double kStep_m = 10.0, kTurn_deg = 0.3;
+  static_cast<void>(Alone(ViewAfter(0.0, 0.0)));
+  HdrImage next;
+  constexpr int kFrames = 2 * kRounds;
+  for (int i = 1; i <= kFrames; ++i) next = Next(ViewAfter(kStep_m * i, kTurn_deg * i));
+  const ErrorStatistics changes =
+      Changes(Alone(ViewAfter(kStep_m * kFrames, kTurn_deg * kFrames)), next);
+  EXPECT_LT(changes.mean(), 0.05);
+  EXPECT_GT(changes.Largest(), 0.0) << "most rays are not followed in a frame";
 }
 
 }  // namespace

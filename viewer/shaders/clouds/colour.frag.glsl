@@ -11,7 +11,8 @@
 // for all screens from the farthest to the nearest. Clouds also dim the beam in the air, and change
 // the light that it scatters more than once, below, between and above the layers (their interfaces).
 layout(location = 0) out vec4 clouds;  // added [cd/m^2, linear sRGB]; transmittance
-layout(location = 1) out vec4 beam;    // transmittance without scattered light
+layout(location = 1) out vec4 beam;    // transmittance without scattered light; binary logarithm of
+                                       // the length of the ray [km]
 
 uniform sampler2D layer_light_0, layer_light_1, layer_light_2, layer_light_3;  // of march.frag.glsl
 
@@ -165,7 +166,7 @@ vec4 AddedOn(vec3 direction, float length_km, CloudScreens screens, bool is_key)
 }
 
 void main() {
-  CloudMapRay ray = RayOfCloudMap();
+  CloudMapRay ray = RayOfTexel(ivec2(gl_FragCoord.xy));
   CloudScreens screens = ScreensOn(ivec2(gl_FragCoord.xy));
   vec4 added = AddedOn(ray.direction, ray.length_km, screens, true);
 #ifdef TWO_LIGHTS
@@ -178,5 +179,5 @@ void main() {
     unscattered *= pow(screens.gathered[n].z, 1.0 / cloud_shear[screens.layer[n]].z);
   }
   clouds = vec4(LinearSrgb(added), left);
-  beam = vec4(unscattered);
+  beam = vec4(unscattered, log2(ray.length_km), 0.0, 0.0);
 }

@@ -4,16 +4,14 @@ uniform sampler2D surface_map;  // distance [m] in the fourth component, 0: no t
 uniform ivec2 picture_size;
 uniform int cloud_scale;
 
-const float kToSpace_km = 1e3;
-
 struct CloudMapRay {
   vec3 direction;
   float length_km;  // to the ground, or kToSpace_km
 };
 
-// Returns the ray of the current pixel of a map.
-CloudMapRay RayOfCloudMap() {
-  ivec2 pixel = min(ivec2(gl_FragCoord.xy) * cloud_scale + cloud_scale / 2, picture_size - 1);
+// Returns the ray of a texel of a map.
+CloudMapRay RayOfTexel(ivec2 texel) {
+  ivec2 pixel = min(texel * cloud_scale + cloud_scale / 2, picture_size - 1);
   vec3 direction = ViewDirection((2.0 * vec2(pixel) + 1.0) / vec2(picture_size) - 1.0);
   float distance_m = texelFetch(surface_map, pixel, 0).w;
   float length_km = distance_m > 0.0        ? 1e-3 * distance_m

@@ -170,7 +170,7 @@ void main() {
                  LampAirlightRgb(direction, LampRayEnd(direction, surface.w));
 #endif
 #if HAS_CLOUDS
-  picture.rgb = BehindClouds(picture.rgb, surface.w);
+  picture.rgb = BehindClouds(picture.rgb, 1e-3 * surface.w);
 #endif
 }
 #endif
@@ -269,7 +269,7 @@ void main() {
   if (planet.is_seen) picture.rgb += LampRgb(PlanetUnderLamps(planet));
 #endif
 #if HAS_CLOUDS
-  picture.rgb = BehindClouds(picture.rgb, 0.0);
+  picture.rgb = BehindClouds(picture.rgb, planet.is_seen ? planet.distance_km : kToSpace_km);
 #endif
 }
 #endif
@@ -299,7 +299,7 @@ void main() {
   picture.rgb += LampAirlightRgb(direction, LampRayEnd(direction, 0.0));
 #endif
 #if HAS_CLOUDS
-  picture.rgb = BehindClouds(picture.rgb, 0.0);
+  picture.rgb = BehindClouds(picture.rgb, kToSpace_km);
 #endif
 }
 #endif
