@@ -32,8 +32,8 @@ struct CloudLayerFluxes {
 struct OuterFluxes {
   double sky = 0.0;               // E: diffuse light from above all layers, without S u_top
   double direct_on_ground = 0.0;  // s
-  double from_ground = 0.0;       // G: diffuse light that the ground emits
   double reflection = 0.0;        // S, in [0, 1)
+  double from_ground = 0.0;       // G: diffuse light that the ground emits
 };
 
 /// Diffuse fluxes at an interface.

@@ -44,7 +44,7 @@ std::vector<InterfaceFluxes> FollowedBetween(std::span<const CloudLayerFluxes> l
 // Both sum the same series; 1e-12 is rounding.
 TEST(LayerExchange, EqualsLightFollowedFromLayerToLayer) {
   const OuterFluxes outer{
-      .sky = 0.2, .direct_on_ground = 0.25, .from_ground = 0.1, .reflection = 0.15};
+      .sky = 0.2, .direct_on_ground = 0.25, .reflection = 0.15, .from_ground = 0.1};
   const auto at = FluxesBetween(kThreeLayers, outer, 0.6);
   const auto followed = FollowedBetween(kThreeLayers, outer, 0.6);
   ASSERT_EQ(at.size(), 4u);
