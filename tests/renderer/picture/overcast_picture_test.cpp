@@ -133,7 +133,7 @@ std::vector<double> RowsAtTheBaseOfStratus(int rows) {
 
 // Fixed on 2026-11-30: fog in front of clouds counted with a transmittance that was linear in distance
 // within pieces of up to two optical depths, and where a ray had one piece more the picture had a step of
-// 14 %. From row to row, 0.5 degrees, stratus above fog changes by 2 % at most.
+// 14 %. Rows are 0.5 degrees apart; the bound is far from that step and from the gradient of the sky.
 TEST(OvercastPicture, FogBelowStratusHasNoSteps) {
   const std::vector<double> light = RowsAtTheBaseOfStratus(60);
   for (std::size_t row = 1; row < light.size(); ++row)
