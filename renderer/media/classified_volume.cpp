@@ -54,29 +54,30 @@ class LinearStretches {
   void Add(double begin, double end, double least, double largest) {
     if (!(begin < end)) return;
     const bool continues =
-        open_ && open_->end == begin &&
-        transfer_.IsLinear(std::min(least, open_->least), std::max(largest, open_->largest));
+        is_open_ && open_.end == begin &&
+        transfer_.IsLinear(std::min(least, open_.least), std::max(largest, open_.largest));
     if (continues) {
-      *open_ = {open_->begin, end, std::min(least, open_->least),
-                std::max(largest, open_->largest)};
+      open_ = {open_.begin, end, std::min(least, open_.least), std::max(largest, open_.largest)};
       return;
     }
     Close();
     open_ = {begin, end, least, largest};
+    is_open_ = true;
   }
   void Close() {
-    if (open_) {
-      const double most = transfer_.LargestExtinction(open_->least, open_->largest);
-      if (most > 0.0) pieces_.push_back({open_->begin, open_->end, most / largest_per_m_});
-    }
-    open_.reset();
+    if (!is_open_) return;
+    const double most = transfer_.LargestExtinction(open_.least, open_.largest);
+    if (most > 0.0) pieces_.push_back({open_.begin, open_.end, most / largest_per_m_});
+    is_open_ = false;
   }
   [[nodiscard]] std::vector<DensePiece> Take() { return std::move(pieces_); }
 
  private:
   const TransferFunction& transfer_;
   double largest_per_m_;
-  std::optional<ValuePiece> open_;
+  // Not std::optional: g++ 12 takes its value for uninitialised.
+  ValuePiece open_{};
+  bool is_open_ = false;
   std::vector<DensePiece> pieces_;
 };
 

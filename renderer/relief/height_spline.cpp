@@ -72,7 +72,7 @@ struct SplineWeights {
   std::array<double, 4> value, slope, bend;
 };
 
-SplineWeights WeightsAt(double t) {
+SplineWeights SplineWeightsAt(double t) {
   const double s = 1.0 - t;
   return {{s * s * s / 6.0, (4.0 - 6.0 * t * t + 3.0 * t * t * t) / 6.0,
            (4.0 - 6.0 * s * s + 3.0 * s * s * s) / 6.0, t * t * t / 6.0},
@@ -112,7 +112,7 @@ ModelAt<double> HeightSpline::At(double east_m, double north_m) const {
   const double x = std::clamp(east_m / spacing_east_m_, -0.5, columns_ - 0.5);
   const double y = std::clamp(-north_m / spacing_north_m_, -0.5, rows_ - 0.5);
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
-  const SplineWeights of_x = WeightsAt(x - column), of_y = WeightsAt(y - row);
+  const SplineWeights of_x = SplineWeightsAt(x - column), of_y = SplineWeightsAt(y - row);
   ModelAt<double> at;
   for (int j = 0; j < 4; ++j) {
     double value = 0.0, slope = 0.0, bend = 0.0;
