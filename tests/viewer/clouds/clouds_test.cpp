@@ -323,7 +323,9 @@ class MovingClouds : public tests::Headless {
                    70.0 * kRadiansPerDegree};
     eye.place = LocalFrame(kWgs84, scene_.place).GeodeticFromEnu(Point<Enu>{{0.0, north_m, 0.0}});
     eye.place.height_m = 1000.0;
-    return {eye, *scene_.time, kSmallCloudPicture.width, kSmallCloudPicture.height};
+    // The last row of rays through clouds lies at the border of a picture of odd height.
+    constexpr int kOddHeight = 2 * (kSmallCloudPicture.height / 2) + 1;
+    return {eye, *scene_.time, kSmallCloudPicture.width, kOddHeight};
   }
   /// Draws a picture of its own.
   HdrImage Alone(const PaintedView& view) {

@@ -9,9 +9,14 @@ struct CloudMapRay {
   float length_km;  // to the ground, or kToSpace_km
 };
 
+// Returns the pixel whose ray a texel of a map has. The last ones may lie at the border of the picture.
+ivec2 PixelOfTexel(ivec2 texel) {
+  return min(texel * cloud_scale + cloud_scale / 2, picture_size - 1);
+}
+
 // Returns the ray of a texel of a map.
 CloudMapRay RayOfTexel(ivec2 texel) {
-  ivec2 pixel = min(texel * cloud_scale + cloud_scale / 2, picture_size - 1);
+  ivec2 pixel = PixelOfTexel(texel);
   vec3 direction = ViewDirection((2.0 * vec2(pixel) + 1.0) / vec2(picture_size) - 1.0);
   float distance_m = texelFetch(surface_map, pixel, 0).w;
   float length_km = distance_m > 0.0        ? 1e-3 * distance_m

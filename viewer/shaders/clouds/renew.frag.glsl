@@ -60,8 +60,8 @@ void main() {
                       cloud_turn.y * ray.direction.x + cloud_turn.x * ray.direction.y, ray.direction.z);
   vec3 seen = earlier_screen * (distance_m * towards + moved);
   vec2 screen = seen.xy / max(seen.z, 1e-3);
-  vec2 pixel = (0.5 + 0.5 * screen) * vec2(picture_size);
-  vec4 before = EarlierAt((pixel - 0.5 - float(cloud_scale / 2)) / float(cloud_scale), reach.r);
+  vec2 way = (0.5 + 0.5 * screen) * vec2(picture_size) - vec2(PixelOfTexel(texel)) - 0.5;
+  vec4 before = EarlierAt(vec2(texel) + way / float(cloud_scale), reach.r);
   bool is_new = ((from.x | from.y) & 1) == 0;
   bool was_outside = seen.z <= 0.0 || any(greaterThan(abs(screen), vec2(1.0)));
   gathered = is_new || was_outside ? rays.mean : before;
