@@ -221,7 +221,7 @@ LargeClouds LargeCumulus(double depth_m) {
   constexpr double kLarge_m = 1300.0;
   CloudOptions options = DefaultCloudOptions(CloudGenus::kCumulus);
   options.depth_m = depth_m;
-  options.period_m = tests::ScaledDown(8.0, 4.0) * kPeriodStep_m;
+  options.period_m = 8.0 * kPeriodStep_m;
   LargeClouds large;
   int count = 0;
   for (const CumulusCloud& cloud : CumulusPopulation(options, 0.0)) {
