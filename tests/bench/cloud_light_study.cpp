@@ -26,6 +26,7 @@
 #include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/report/cloud_views.h"
+#include "tests/bench/processor_time.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -47,9 +48,7 @@ struct Stopwatch {
   std::clock_t begin = std::clock();
   std::chrono::steady_clock::time_point wall = std::chrono::steady_clock::now();
 
-  [[nodiscard]] double processor_s() const {
-    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  }
+  [[nodiscard]] double processor_s() const { return tests::ProcessorSecondsSince(begin); }
   [[nodiscard]] double wall_s() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   }

@@ -18,6 +18,7 @@
 #include "renderer/layer.h"
 #include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/report/cloud_views.h"
+#include "tests/bench/processor_time.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -25,10 +26,6 @@ namespace {
 constexpr int kPoints = 5000;
 // Light of the medium without forward peak follows this power of the transmittance.
 constexpr double kScaledPower = 0.4;
-
-double Seconds(std::clock_t begin) {
-  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-}
 
 /// Returns points of a box, with cloud or anywhere.
 std::vector<glm::dvec3> PointsIn(const CloudBox& box, const CloudField& field, bool with_cloud) {
@@ -47,7 +44,7 @@ std::vector<double> At(const std::vector<glm::dvec3>& points, const Value& value
   const std::clock_t begin = std::clock();
   std::vector<double> values;
   for (const glm::dvec3& point : points) values.push_back(value(point));
-  us = 1e6 * Seconds(begin) / static_cast<double>(points.size());
+  us = 1e6 * tests::ProcessorSecondsSince(begin) / static_cast<double>(points.size());
   return values;
 }
 
@@ -68,7 +65,7 @@ void RunStudy(const std::string& genus, double sun_deg, double period_km) {
   const CloudLowSun beams(field, to_sun, of_pictures), exact(field, to_sun, in_short_steps);
   const std::clock_t begin = std::clock();
   const CloudLowSunMap map(field, beams);
-  const double map_s = Seconds(begin);
+  const double map_s = tests::ProcessorSecondsSince(begin);
   double us = 0.0, beam_us = 0.0, depth_us = 0.0, around_us = 0.0;
   const CloudBox box = field.Bounds();
   const std::vector<glm::dvec3> inside = PointsIn(box, field, true);

@@ -27,16 +27,13 @@
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/relief/detailed_ground.h"
 #include "renderer/surface/surface.h"
+#include "tests/bench/processor_time.h"
 
 namespace alpenglow::renderer {
 namespace {
 
 constexpr double kSide_m = 12000.0;
 constexpr double kMetresPerRadian = 6371000.0;
-
-double Seconds(std::clock_t begin) {
-  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-}
 
 /// Returns the samples of a square of kSide_m.
 MetricGrid WindowOf(const ElevationGrid& grid, double east_m, double south_m) {
@@ -288,7 +285,7 @@ void PrintTimes(const DetailedGround& ground, const MountainCover& cover) {
         sum += static_cast<double>((with_slope ? SlopedReliefAt(places[i], models[i], cover, scale)
                                                : ReliefAt(places[i], models[i], cover, scale))
                                        .height_m);
-      const double ns = 1e9 * Seconds(begin) / kPlaces;
+      const double ns = 1e9 * tests::ProcessorSecondsSince(begin) / kPlaces;
       fmt::print(" {:6.0f}", std::isfinite(sum) ? ns : -1.0);
     }
   }

@@ -35,6 +35,7 @@
 #include "renderer/picture/pixel_light.h"
 #include "renderer/picture/prepared_scene.h"
 #include "renderer/scene/scene_clouds.h"
+#include "tests/bench/processor_time.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -186,7 +187,7 @@ void Compare(const StudyView& view, const StudyTime& when, const StudySky& sky,
     pixels[static_cast<std::size_t>(i)] = {fast.sum().MeanRadiance(), traced.sum().MeanRadiance(),
                                            traced.sum().paths.RelativeError().value_or(0.0)};
   });
-  const double took_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  const double took_s = tests::ProcessorSecondsSince(begin);
   std::map<std::string, StudyGroup> groups;
   for (int i = 0; i < kWide * kHigh; ++i) {
     const std::string group = GroupOf(fast_frame, fast_shader, i % kWide + 0.5, i / kWide + 0.5);

@@ -23,6 +23,7 @@
 #include "renderer/media/media_march.h"
 #include "renderer/media/volume_orders.h"
 #include "renderer/report/plume_light.h"
+#include "tests/bench/processor_time.h"
 #include "tests/bench/studies.h"
 
 namespace alpenglow::tests {
@@ -69,7 +70,7 @@ void VolumeError(int count, char** arguments) {
       const std::clock_t begin = std::clock();
       const auto wall = std::chrono::steady_clock::now();
       const PlumeOrders orders(plume, to_sun, cells);
-      const double processor_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+      const double processor_s = tests::ProcessorSecondsSince(begin);
       const std::chrono::duration<double> wall_s = std::chrono::steady_clock::now() - wall;
       PrintRow(of, fmt::format("all, {} cells", cells), processor_s, wall_s.count(),
                ErrorsOfPlume(traced, [&](const CloudRay& ray) { return orders.Along(ray); }));
