@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/cloud_phase/forward_peak.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/cloud_phase/peak_moments.h"
@@ -74,17 +72,9 @@ PeakFactors PeakFactorsOf(const PeakMoments& moments, int degree, double fractio
 
 ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
     : effective_(kAngles * kDepths), broadened_(kAngles * kDepths) {
-  if (degree < 0 || degree > 16) {
-    throw InputError(
-        fmt::format("moments of light in clouds of degree {}; it must be 0 to 16", degree));
-  }
   const PeakMoments moments(phase);
   const std::vector<double>& chi = moments.chi;
-  fraction_ = chi[static_cast<std::size_t>(degree) + 1];
-  if (!(fraction_ > 0.0 && fraction_ < 1.0)) {
-    throw InputError(
-        fmt::format("a phase function of clouds has no forward peak beyond degree {}", degree));
-  }
+  fraction_ = moments.PeakFraction(degree);
   const PeakFactors factors = PeakFactorsOf(moments, degree, fraction_);
   tbb::parallel_for(std::size_t{0}, kAngles, [&](std::size_t angle) {
     const std::vector<double> series =

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/cloud_phase/peak_moments.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 
@@ -26,6 +29,19 @@ PeakMoments::PeakMoments(const PhaseFunction& phase)
   for (std::size_t l = 0; l < window.size(); ++l) {
     window[l] = std::exp(-std::pow(static_cast<double>(l) / kWindowDegree, 2));
   }
+}
+
+double PeakMoments::PeakFraction(int degree) const {
+  if (degree < 0 || degree > 16) {
+    throw InputError(
+        fmt::format("moments of light in clouds of degree {}; it must be 0 to 16", degree));
+  }
+  const double fraction = chi[static_cast<std::size_t>(degree) + 1];
+  if (!(fraction > 0.0 && fraction < 1.0)) {
+    throw InputError(
+        fmt::format("a phase function of clouds has no forward peak beyond degree {}", degree));
+  }
+  return fraction;
 }
 
 double RoundPhase(const PhaseFunction& phase, double angle_rad, const PeakMoments& moments,

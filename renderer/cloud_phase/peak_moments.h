@@ -21,6 +21,10 @@ struct PeakMoments {
   std::vector<double> chi, window;  // of the degrees 0 to kPeakSeriesDegree
 
   explicit PeakMoments(const PhaseFunction& phase);
+
+  /// Returns f, the fraction of the light in the peak beyond a degree. Throws InputError unless the
+  /// degree lies in [0, 16] and f in (0, 1).
+  [[nodiscard]] double PeakFraction(int degree) const;
 };
 
 /// Returns the phase function [1/sr], round near the forward direction.

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/cloud_phase/phase_colours.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
-#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/cloud_phase/peak_moments.h"
@@ -64,6 +63,16 @@ struct BandPhase {
   }
 };
 
+std::vector<BandPhase> WithMoments(const std::vector<PhaseFunction>& phases) {
+  std::vector<std::optional<BandPhase>> made(phases.size());
+  tbb::parallel_for(std::size_t{0}, phases.size(), [&](std::size_t i) {
+    made[i] = BandPhase{&phases[i], PeakMoments(phases[i])};
+  });
+  std::vector<BandPhase> with;
+  for (std::optional<BandPhase>& each : made) with.push_back(std::move(*each));
+  return with;
+}
+
 /// Returns the factors of w_l P_l in the differences [degree][hat][band].
 std::vector<double> DifferenceFactors(const BandPhase& grey, const std::vector<BandPhase>& bands,
                                       int degree, double fraction) {
@@ -93,29 +102,22 @@ PeakHats PeakHatsAt(double peak_depth) {
 
 PhaseColours::PhaseColours(const PhaseFunction& grey, const std::vector<PhaseFunction>& bands,
                            int degree)
-    : bands_(bands.size()), table_(kColourAngles * kPeakHats * bands.size()) {
-  RequireInRange(degree, 0, 16, "degree of moments of light in clouds");
+    : bands_(bands.size()) {
   const BandPhase without{&grey, PeakMoments(grey)};
-  const double fraction = without.moments.chi[static_cast<std::size_t>(degree) + 1];
-  if (!(fraction > 0.0 && fraction < 1.0)) {
-    throw InputError(
-        fmt::format("a phase function of clouds has no forward peak beyond degree {}", degree));
-  }
-  std::vector<std::optional<BandPhase>> made(bands_);
-  tbb::parallel_for(std::size_t{0}, bands_, [&](std::size_t i) {
-    made[i] = BandPhase{&bands[i], PeakMoments(bands[i])};
-  });
-  std::vector<BandPhase> with;
-  for (std::optional<BandPhase>& each : made) with.push_back(std::move(*each));
+  const double fraction = without.moments.PeakFraction(degree);
+  const std::vector<BandPhase> with = WithMoments(bands);
   const std::vector<double> factors = DifferenceFactors(without, with, degree, fraction);
   const std::size_t columns = kPeakHats * bands_;
+  table_.resize(kColourAngles * columns);
   tbb::parallel_for(std::size_t{0}, kColourAngles, [&](std::size_t angle) {
     const double angle_rad = ColourAngleAt(angle);
     const std::vector<double> series = LegendreSeries(kPeakSeriesDegree, std::cos(angle_rad));
+    const double of_grey = without.ThroughDisk(angle_rad, series);
     std::vector<double> sum(columns);
-    const double without_colour = without.ThroughDisk(angle_rad, series);
-    for (std::size_t i = 0; i < columns; ++i)
-      sum[i] = with[i % bands_].ThroughDisk(angle_rad, series) - without_colour;
+    for (std::size_t band = 0; band < bands_; ++band) {
+      const double difference = with[band].ThroughDisk(angle_rad, series) - of_grey;
+      for (std::size_t hat = 0; hat < kPeakHats; ++hat) sum[hat * bands_ + band] = difference;
+    }
     for (std::size_t l = 0; l < series.size(); ++l) {
       const double* factor = &factors[l * columns];
       for (std::size_t i = 0; i < columns; ++i) sum[i] += factor[i] * series[l];
@@ -125,13 +127,13 @@ PhaseColours::PhaseColours(const PhaseFunction& grey, const std::vector<PhaseFun
   });
 }
 
-std::vector<double> PhaseColours::Differences(const OnceScattered& once) const {
+SpectrumOf<double> PhaseColours::Differences(const OnceScattered& once) const {
   const double place = PlaceOfColourAngle(once.cos_scattering);
   const auto node = std::min(static_cast<std::size_t>(place), kColourAngles - 2);
   const double share = place - static_cast<double>(node);
   const float* low = &table_[node * kPeakHats * bands_];
   const float* high = low + kPeakHats * bands_;
-  std::vector<double> differences(bands_);
+  SpectrumOf<double> differences(bands_);
   for (std::size_t hat = 0; hat < kPeakHats; ++hat) {
     const double light = once.by_depth[hat];
     if (light == 0.0) continue;

@@ -18,9 +18,9 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/phase.h"
 #include "renderer/layer.h"
 
@@ -62,7 +62,7 @@ class PhaseColours {
 
   /// Returns the light of each band less that of the grey phase function [1/sr]. Its integral over all
   /// directions is 0 within 0.003 of the light.
-  [[nodiscard]] std::vector<double> Differences(const OnceScattered& once) const;
+  [[nodiscard]] SpectrumOf<double> Differences(const OnceScattered& once) const;
 
  private:
   std::size_t bands_;

@@ -61,7 +61,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/solved_air.h"
-#include "renderer/cloud_light/cloud_colours.h"
+#include "renderer/lit_clouds/cloud_colours.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/illumination/distant_light.h"
 #include "renderer/lamps/lamp_light.h"
@@ -158,7 +158,7 @@ struct CloudsInPicture {
   std::optional<PixelRays> pixels = std::nullopt;
   /// The light that mountains let through to clouds; null: all.
   std::shared_ptr<const TerrainSunlight> past_terrain = nullptr;
-  /// Whether light of first order has the colours of bows, glories, coronas and halos.
+  /// It is true if bows, glories, coronas and halos have their colours.
   bool has_colours = false;
   /// The eye for which ground mirrors clouds. Nothing: mirrored rays are followed one by one.
   std::optional<MirrorEye> mirror = std::nullopt;

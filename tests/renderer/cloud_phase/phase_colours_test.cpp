@@ -19,7 +19,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr int kDegree = 3;
+constexpr int kPeakDegree = 3;
 constexpr double kBlue_nm = 450.0, kRed_nm = 650.0;
 
 /// The phase functions of droplets or crystals of one size, and their colours.
@@ -29,7 +29,7 @@ struct Particles {
   PhaseColours colours;
 
   Particles(const PhaseFunction& of_grey, std::vector<PhaseFunction> of_bands)
-      : grey(of_grey), bands(std::move(of_bands)), colours(grey, bands, kDegree) {}
+      : grey(of_grey), bands(std::move(of_bands)), colours(grey, bands, kPeakDegree) {}
 
   template <typename Phases>
   static Particles Of(const Phases& phases, double radius_um) {
@@ -42,7 +42,9 @@ struct Particles {
   static Particles Crystals() { return Of(IcePhases, 40.0); }
 
   /// Returns the fraction f of the forward peak.
-  [[nodiscard]] double Fraction() const { return LegendreCoefficients(grey, kDegree + 1).back(); }
+  [[nodiscard]] double Fraction() const {
+    return LegendreCoefficients(grey, kPeakDegree + 1).back();
+  }
 };
 
 /// Returns unit light with an optical depth of the forward peak on its way.
@@ -96,16 +98,16 @@ TEST(PhaseColours, AllBandsHaveTheSameLight) {
 TEST(PhaseColours, DifferencesSumTheOrdersOfThePeak) {
   constexpr double kGrey = 0.8, kBand = 0.75;
   const Particles particles(tests::LobeOf(kGrey), {tests::LobeOf(kBand)});
-  const double f = std::pow(kGrey, kDegree + 1);
+  const double f = std::pow(kGrey, kPeakDegree + 1);
   const auto expected = [&](double g, unsigned degree, double x) {
     const double chi = std::pow(g, degree);
-    const double a = degree <= kDegree ? 1.0 : chi / f;
+    const double a = degree <= kPeakDegree ? 1.0 : chi / f;
     double orders = 0.0, term = std::exp(-x);
     for (int n = 1; n < 60; ++n) {
       orders += term * std::pow(a, n);
       term *= x / (n + 1.0);
     }
-    return ((degree <= kDegree ? chi - f : 0.0) + f * orders) / (1.0 - f);
+    return ((degree <= kPeakDegree ? chi - f : 0.0) + f * orders) / (1.0 - f);
   };
   // Depths of nodes, between which the light of some depths is shared.
   for (const int node : {0, 1, 2, 4}) {
@@ -122,12 +124,12 @@ TEST(PhaseColours, LightIsSharedBetweenNeighbouringDepths) {
   const Particles particles = Particles::Droplets();
   const double nu = std::cos(143.0 * kRadiansPerDegree);
   const auto blue = [&](double depth) {
-    return particles.colours.Differences(UnitLight(nu, depth)).front();
+    return particles.colours.Differences(UnitLight(nu, depth))[0];
   };
   OnceScattered both{nu};
   both.Add(0.3, 0.5);
   both.Add(0.7, 3.0);
-  EXPECT_NEAR(particles.colours.Differences(both).front(), 0.3 * blue(0.5) + 0.7 * blue(3.0), 1e-9);
+  EXPECT_NEAR(particles.colours.Differences(both)[0], 0.3 * blue(0.5) + 0.7 * blue(3.0), 1e-9);
   EXPECT_GT(blue(0.0), 2.0 * blue(3.0)) << "the peak blurs colours on a deep way";
   EXPECT_EQ(blue(20.0), blue(500.0));
 }
@@ -136,12 +138,12 @@ TEST(PhaseColours, OneWavelengthHasNoColour) {
   const PhaseFunction phase = DropletPhases(550.0).Drawn(10.0, 0.5);
   const PhaseColours colours(phase, {phase}, 11);
   for (const double nu : {1.0, 0.9, 0.0, -0.8, -1.0})
-    EXPECT_EQ(colours.Differences(UnitLight(nu, 0.7)).front(), 0.0);
+    EXPECT_EQ(colours.Differences(UnitLight(nu, 0.7))[0], 0.0);
 }
 
 TEST(PhaseColours, RefusesAGreyPhaseFunctionWithoutAPeak) {
   const PhaseFunction lobe = tests::LobeOf(0.8);
-  EXPECT_THROW(PhaseColours(tests::LobeOf(0.0), {lobe}, kDegree), InputError);
+  EXPECT_THROW(PhaseColours(tests::LobeOf(0.0), {lobe}, kPeakDegree), InputError);
   EXPECT_THROW(PhaseColours(lobe, {lobe}, 17), InputError);
   EXPECT_THROW(PhaseColours(lobe, {lobe}, -1), InputError);
 }

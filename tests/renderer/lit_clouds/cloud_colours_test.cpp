@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/cloud_light/cloud_colours.h"
+#include "renderer/lit_clouds/cloud_colours.h"
 
 #include <gtest/gtest.h>
 

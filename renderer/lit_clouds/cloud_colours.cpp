@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/cloud_light/cloud_colours.h"
+#include "renderer/lit_clouds/cloud_colours.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -22,7 +22,7 @@ CloudColours::CloudColours(const CloudLight& light, const std::vector<CloudPhase
 Spectrum CloudColours::Of(double sun, const OnceScattered& once) const {
   Spectrum relative(colours_.bands(), 1.0F);
   if (!(sun > 0.0)) return relative;
-  const std::vector<double> differences = colours_.Differences(once);
+  const SpectrumOf<double> differences = colours_.Differences(once);
   for (std::size_t band = 0; band < differences.size(); ++band)
     relative[band] = static_cast<float>(std::max(1.0 + differences[band] / sun, 0.0));
   return relative;
