@@ -119,8 +119,9 @@ const ShaderProgram& CloudPass::Renewal() {
   std::vector<ShaderPiece> texts = view_;
   texts.push_back(LayersDefined(static_cast<int>(kMostCloudLayers)));
   renewal_ = FullScreenProgram(WithViewerPieces(
-      std::move(texts), {"viewer/shaders/clouds/light.glsl", "viewer/shaders/clouds/rays.glsl",
-                         "viewer/shaders/clouds/renew.frag.glsl"}));
+      std::move(texts),
+      {"viewer/shaders/clouds/light.glsl", "viewer/shaders/clouds/rays.glsl",
+       "viewer/shaders/clouds/near_rays.glsl", "viewer/shaders/clouds/renew.frag.glsl"}));
   renewal_->BindBlock("View", view_binding_);
   Connect(*renewal_);
   renewal_->BindSampler("surface_map", units_.surface);

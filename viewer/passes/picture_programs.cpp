@@ -93,7 +93,8 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
     add(WithViewerPieces({}, {"viewer/shaders/view/refracted_disks.glsl"}));
   if (stage.cloud_layers > 0) {
     add(CloudTexts(stage.cloud_layers));
-    add(WithViewerPieces({}, {"viewer/shaders/clouds/picture.glsl"}));
+    add(WithViewerPieces(
+        {}, {"viewer/shaders/clouds/near_rays.glsl", "viewer/shaders/clouds/picture.glsl"}));
   }
   add(GroundTexts(kind.material, kind.land));
   if (stage.sky_by_pixel) add(SkyByPixelTexts());

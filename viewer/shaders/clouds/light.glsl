@@ -89,12 +89,3 @@ vec4 SkyUnderClouds(vec4 sky, float altitude_km, float cos_up) {
   int number = CloudInterfaceAt(1e3 * altitude_km);
   return cloud_interface[number].y * sky + 0.5 * (1.0 + cos_up) * cloud_added[number];
 }
-
-// Returns the weight of one of the four rays of a map around a place.
-// @param share  of the place between them. @param side  0 or 1: of the ray.
-// @param away  difference of the binary logarithms of the lengths of the rays there and at its own place.
-float WeightOfCloudRay(vec2 share, ivec2 side, float away) {
-  const float kTolerance = 0.1;
-  vec2 near = mix(1.0 - share, share, vec2(side));
-  return (near.x * near.y + 1e-4) / (away * away + kTolerance * kTolerance);
-}

@@ -12,22 +12,6 @@ uniform ivec2 first_ray;                         // texel of the map with the fi
 uniform mat3 earlier_screen;  // of the frame before, from directions in the frame of the clouds
 uniform vec3 moved;           // by the eye since then, relative to the clouds [m]
 
-// Returns the light of the frame before at a place of its map [texels].
-vec4 EarlierAt(vec2 at, float reach_here) {
-  ivec2 low = ivec2(floor(at)), last = textureSize(earlier_light, 0) - 1;
-  vec4 sum = vec4(0.0);
-  float weights = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    ivec2 side = ivec2(i % 2, i / 2);
-    ivec2 texel = clamp(low + side, ivec2(0), last);
-    float away = texelFetch(earlier_reach, texel, 0).r - reach_here;
-    float weight = WeightOfCloudRay(at - vec2(low), side, away);
-    sum += weight * texelFetch(earlier_light, texel, 0);
-    weights += weight;
-  }
-  return sum / weights;
-}
-
 // Light of the four rays of this frame around a texel.
 struct NewRays {
   vec4 mean, sum;  // weighted by nearness; not weighted
@@ -61,7 +45,7 @@ void main() {
   vec3 seen = earlier_screen * (distance_m * towards + moved);
   vec2 screen = seen.xy / max(seen.z, 1e-3);
   vec2 way = (0.5 + 0.5 * screen) * vec2(picture_size) - vec2(PixelOfTexel(texel)) - 0.5;
-  vec4 before = EarlierAt(vec2(texel) + way / float(cloud_scale), reach.r);
+  vec4 before = NearRays(earlier_light, earlier_reach, vec2(texel) + way / float(cloud_scale), reach.g);
   bool is_new = ((from.x | from.y) & 1) == 0;
   bool was_outside = seen.z <= 0.0 || any(greaterThan(abs(screen), vec2(1.0)));
   gathered = is_new || was_outside ? rays.mean : before;
