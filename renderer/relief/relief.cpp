@@ -228,7 +228,7 @@ void AddGullies(Gullies<T>& sum, const PlacedGround<T>& at, const GullySetting<T
   sum.valley -= depth * part * stripes.cosine;
 }
 
-/// What decides on layers besides their forms.
+/// Properties of a place on which the layers depend besides their forms.
 template <typename T>
 struct Setting {
   T model_slope, ice, above_line, hollow, cold;

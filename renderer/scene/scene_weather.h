@@ -57,7 +57,8 @@ inline constexpr std::pair kStationHeights_m{-500.0, 6000.0};
 /// fog are above the station (StationHeight_m). If its height is not known, and over the built-in
 /// range, they are above the ground at the place of the scene, unless the scene gives a height. Clouds
 /// replace those of the scene if the report states clouds, fog replaces its fog if the station is in fog, and
-/// the time and the wind over water are set if the scene has none. Throws InputError as ReadMetar and InReportedAir do.
+/// the time and the wind over water are set if the scene has none. Throws InputError as ReadMetar
+/// and InReportedAir do.
 /// @param origin  where the report was given, "--metar"; the notes and the names of the layers begin with it.
 [[nodiscard]] Scene InWeather(Scene scene, const std::string& origin);
 

@@ -6,8 +6,8 @@
 // window. All GL calls of this folder use the context that is current on the calling thread.
 //
 // It also provides owners of OpenGL object names, the upload of textures and uniform blocks and
-// their binding, and a scissor rectangle and blending for a scope. An object must not outlive the context in
-// which it was created.
+// their binding, and a scissor rectangle and blending for a scope. An object must not outlive the
+// context in which it was created.
 #pragma once
 
 #include <epoxy/gl.h>

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kLong_s = 1e3;  // time after which all fades have ended
 
-// Returns the ground for lamps, media and clouds, which must exist before the first picture. A landing light
-// does not need it.
+// Returns the ground for lamps, media and clouds, which must exist before the first picture. A
+// landing light does not need it.
 SceneGround LampGroundOf(const Scene& scene) {
   if (!scene.lights.empty() || !scene.layers.empty() || !scene.clouds.empty() || scene.town_zenith)
     return LoadGround(scene);

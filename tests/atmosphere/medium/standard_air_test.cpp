@@ -20,7 +20,7 @@ TEST(StandardAir, DensityAgreesWithThePublishedTable) {
   }
 }
 
-// The same table: geometric height [m], temperature [K], pressure [Pa].
+// The rows are of the same table: geometric height [m], temperature [K], pressure [Pa].
 TEST(StandardAir, TemperatureAndPressureAgreeWithThePublishedTable) {
   const double published[][3] = {{0.0, 288.150, 101325.0},
                                  {5000.0, 255.676, 54048.0},

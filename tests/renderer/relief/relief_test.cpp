@@ -168,7 +168,7 @@ TEST(Relief, RefusesScalesThatAreNotPositive) {
 /// 512-256 m, ..., 16-8 m. A direct Fourier sum.
 using Octaves = std::array<double, 6>;
 
-/// Whether profiles keep the height of their middle, and so their cover, or are bare rock.
+/// Level profiles keep the height of their middle, and so their cover. Rising ones are bare rock.
 enum ProfileHeight { kLevel, kRising };
 
 Octaves SlopesByOctave(const Bowl& plane, double along_east, double along_north,
