@@ -309,7 +309,8 @@ struct CloudPathOptions {
   std::optional<int> max_order = {};
 };
 
-/// The light of a field under one sun by path tracing. It has no bias, and needs no preparation.
+/// The light of a field under one sun by path tracing. It needs no preparation, and has no bias unless
+/// this is allowed (WithSimilarity).
 /// Immutable; copies share their memory. All functions may be called from several threads; each uses
 /// all processors.
 class CloudPaths {
@@ -320,6 +321,15 @@ class CloudPaths {
   /// @param surroundings  see there.
   CloudPaths(const CloudField& field, const Direction& to_sun,
              const CloudSurroundings& surroundings = {});
+
+  /// Returns the light by shorter paths: after some collisions the phase function is replaced by a
+  /// wide lobe, and the extinction is lowered so that the light is similar. It suits fields that
+  /// change in every frame, for which CloudLight would be solved anew. Throws InputError, too,
+  /// for a grid with g = 0.
+  /// After 8 collisions mean sunlight is within 2 % of that of paths without bias for suns from 12
+  /// degrees on, and within 25 % at 1 degree (asserted by cloud_path_tracer_test).
+  /// @param collisions  before, in [1, 1000].
+  [[nodiscard]] CloudPaths WithSimilarity(int collisions = 8) const;
 
   /// Returns the radiance of a ray to the sky or to the ground. Throws InputError for a ray of finite
   /// length.
@@ -336,6 +346,7 @@ class CloudPaths {
 
  private:
   struct State;
+  explicit CloudPaths(std::shared_ptr<const State> state);
   std::shared_ptr<const State> state_;
 };
 

@@ -502,6 +502,15 @@ CloudPaths::CloudPaths(const CloudField& field, const Direction& to_sun,
       State{field.state_, sun, around.ground_m, low_sun, std::move(tracer)});
 }
 
+CloudPaths::CloudPaths(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+
+CloudPaths CloudPaths::WithSimilarity(int collisions) const {
+  RequireInRange(collisions, 1.0, 1000.0, "collisions");
+  State other = *state_;
+  other.tracer = state_->tracer.WithSimilarity(collisions);
+  return CloudPaths(std::make_shared<const State>(std::move(other)));
+}
+
 TracedCloudRadiance CloudPaths::Radiance(const CloudRay& ray,
                                          const CloudPathOptions& options) const {
   const renderer::CloudRadiance light =

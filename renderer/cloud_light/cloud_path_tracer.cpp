@@ -13,6 +13,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase.h"
+#include "renderer/cloud_light/cloud_similarity.h"
 #include "renderer/clouds/periodic_index.h"
 
 namespace alpenglow::renderer {
@@ -28,6 +29,8 @@ constexpr double kUnbounded_m = std::numeric_limits<double>::infinity();
 constexpr double kLeastWeight = 0.25;
 // Paths that are worth less than this, in light of a mean direction, survive by their worth.
 constexpr double kLeastWorth = 0.25;
+// Steps of the optical depth to the sun at the last true collision; voxels have 20 m.
+constexpr double kSunStep_m = 8.0;
 // Radius of the droplets whose phase function the lobe around the sun has at the ground.
 constexpr double kTypicalRadius_um = 10.0;
 // Fluxes have this number of groups of batches, whose scatter is their standard error. A wave of
@@ -81,6 +84,7 @@ struct CloudPathTracer::Walker {
     double weight = 1.0;
     double share = 1.0;  // weight of the sun's light at the next collision: see the header
     int order = 0;       // events so far
+    int collisions = 0;  // those of them in clouds
   };
   Branch at;
   std::vector<Branch> segments{};
@@ -102,18 +106,36 @@ struct CloudPathTracer::Turn {
   }
 };
 
+/// A collision of a path.
+struct CloudPathTracer::Event {
+  const PhaseFunction* phase;
+  double albedo;
+  int number;  // of collisions of the path up to this one
+};
+
 CloudPathTracer::CloudPathTracer(const CloudField& field, CloudScatterers scatterers,
                                  const CloudSurroundings& surroundings, bool uses_detail)
     : field_(&field),
       tracker_(field, uses_detail),
       phases_(std::move(scatterers.phases)),
       albedo_(scatterers.albedo.value_or(field.single_scattering_albedo())),
-      surroundings_(surroundings) {
+      surroundings_(surroundings),
+      similar_tracker_(tracker_) {
   RequireInRange(albedo_, 0.0, 1.0, "the albedo of single scattering in clouds");
   RequireUnit(surroundings_.to_sun, "the direction to the sun");
   RequireInRange(surroundings_.ground_albedo, 0.0, 1.0, "the albedo of the ground below clouds");
   RequireInRange(surroundings_.ground_altitude_m, -1e5, field.base_altitude_m(),
                  "the altitude of the ground below clouds [m]");
+}
+
+CloudPathTracer CloudPathTracer::WithSimilarity(int collisions) const {
+  RequireInRange(collisions, 1.0, 1000.0, "true collisions of light in clouds");
+  CloudPathTracer other = *this;
+  const CloudScatterers scatterers{phases_, albedo_};
+  other.similarity_ = std::make_shared<const CloudSimilarity>(*field_, scatterers);
+  other.similar_tracker_ = tracker_.WithScale(other.similarity_->extinction_scale());
+  other.true_collisions_ = collisions;
+  return other;
 }
 
 double CloudPathTracer::GroundDistance_m(const CloudRay& ray) const {
@@ -131,28 +153,64 @@ double CloudPathTracer::SunTransmittance(const glm::dvec3& point, PathRandom& ra
   return tracker_.Transmittance({point, surroundings_.to_sun}, kUnbounded_m, random);
 }
 
+double CloudPathTracer::SunTransmittanceAfter(int collisions, const glm::dvec3& point,
+                                              PathRandom& random) const {
+  if (!IsSimilarAfter(collisions)) return SunTransmittance(point, random);
+  if (surroundings_.low_sun != nullptr)
+    return std::exp(-similarity_->extinction_scale() * SunDepth(point));
+  return similar_tracker_.Transmittance({point, surroundings_.to_sun}, kUnbounded_m, random);
+}
+
+double CloudPathTracer::SunDepth(const glm::dvec3& point) const {
+  if (surroundings_.low_sun != nullptr) return surroundings_.low_sun->OpticalDepth(point);
+  return tracker_.OpticalDepth({point, surroundings_.to_sun}, kUnbounded_m, kSunStep_m);
+}
+
+CloudPathTracer::Event CloudPathTracer::EventAt(const CloudRay& ray, int collisions,
+                                                PathRandom& random) const {
+  if (IsSimilarAfter(collisions))
+    return {&similarity_->phase(), similarity_->albedo(), collisions + 1};
+  return {&PhaseAt(ray.origin, random), albedo_, collisions + 1};
+}
+
+double CloudPathTracer::SunFrom(const Event& event, const CloudRay& ray, PathRandom& random) const {
+  const double cosine = glm::dot(ray.direction, surroundings_.to_sun);
+  if (similarity_ != nullptr && event.number == true_collisions_)
+    return event.albedo * similarity_->LastTrueSource(cosine, SunDepth(ray.origin));
+  return event.albedo * Phase(*event.phase, cosine) *
+         SunTransmittanceAfter(event.number, ray.origin, random);
+}
+
 glm::dvec3 CloudPathTracer::AroundSun(double to_sun, PathRandom& random) const {
   return TurnedFrom(surroundings_.to_sun, to_sun, 2.0 * kPi * random.Next());
 }
 
-double CloudPathTracer::SideRay(const glm::dvec3& from, const Turn& turn, const SunLobe& lobe,
+double CloudPathTracer::SideRay(const Walker& walker, const Turn& turn, const SunLobe& lobe,
                                 PathRandom& random) const {
   const double to_sun = lobe.DrawnFromPeak(random.Next());
-  CloudRay side{from, AroundSun(to_sun, random)};
+  CloudRay side{walker.at.ray.origin, AroundSun(to_sun, random)};
   const double main = turn.Density(side.direction);
   if (main == 0.0) return 0.0;
   const std::optional<double> distance_m = tracker_.Collision(side, GroundDistance_m(side), random);
   if (!distance_m) return 0.0;
   side.origin = side.At(*distance_m);
-  return albedo_ * Phase(PhaseAt(side.origin, random), to_sun) *
-         SunTransmittance(side.origin, random) * main /
+  const Event event = EventAt(side, walker.at.collisions, random);
+  return SunFrom(event, side, random) * main /
          (main + lobe.OfSidePaths(to_sun) + lobe.Peak(to_sun));
 }
 
 void CloudPathTracer::GoOn(Walker& walker, const Turn& turn, const SunLobe& lobe,
                            PathRandom& random) const {
   const glm::dvec3 from = walker.at.ray.origin;
-  walker.light.sun += walker.at.weight * SideRay(from, turn, lobe, random);
+  if (IsSimilarAfter(walker.at.collisions)) {  // the lobe is so wide that it needs no side paths
+    const double weight = WeightAfterRoulette(walker.at.weight, random);
+    if (weight > 0.0) {
+      walker.segments.push_back(
+          {{from, turn.Drawn(random)}, weight, 1.0, walker.at.order, walker.at.collisions});
+    }
+    return;
+  }
+  walker.light.sun += walker.at.weight * SideRay(walker, turn, lobe, random);
   const auto add = [&](const glm::dvec3& direction) {
     const double to_sun = glm::dot(direction, surroundings_.to_sun);
     const double main = turn.Density(direction), all = main + lobe.OfSidePaths(to_sun);
@@ -163,21 +221,23 @@ void CloudPathTracer::GoOn(Walker& walker, const Turn& turn, const SunLobe& lobe
       if (random.Next() * kLeastWorth >= worth) return;
       weight *= kLeastWorth / worth;
     }
-    walker.segments.push_back(
-        {{from, direction}, weight, all / (all + lobe.Peak(to_sun)), walker.at.order});
+    walker.segments.push_back({{from, direction},
+                               weight,
+                               all / (all + lobe.Peak(to_sun)),
+                               walker.at.order,
+                               walker.at.collisions});
   };
   if (random.Next() < kSidePaths) add(AroundSun(lobe.DrawnFromMean(random.Next()), random));
   add(turn.Drawn(random));
 }
 
 void CloudPathTracer::Collide(Walker& walker, PathRandom& random, int max_order) const {
-  const PhaseFunction& phase = PhaseAt(walker.at.ray.origin, random);
-  walker.at.weight *= albedo_;
-  walker.light.sun += walker.at.weight * walker.at.share *
-                      Phase(phase, glm::dot(walker.at.ray.direction, surroundings_.to_sun)) *
-                      SunTransmittance(walker.at.ray.origin, random);
+  const Event event = EventAt(walker.at.ray, walker.at.collisions, random);
+  walker.light.sun += walker.at.weight * walker.at.share * SunFrom(event, walker.at.ray, random);
+  walker.at.weight *= event.albedo;
+  walker.at.collisions = event.number;
   if (++walker.at.order >= max_order) return;
-  GoOn(walker, {&phase, walker.at.ray.direction}, SunLobe(phase), random);
+  GoOn(walker, {event.phase, walker.at.ray.direction}, SunLobe(*event.phase), random);
 }
 
 void CloudPathTracer::Reflect(Walker& walker, PathRandom& random, int max_order) const {
@@ -186,8 +246,8 @@ void CloudPathTracer::Reflect(Walker& walker, PathRandom& random, int max_order)
   if (walker.at.weight == 0.0) return;
   const double mu_s = surroundings_.to_sun.z;
   if (mu_s > 0.0) {
-    walker.light.sun +=
-        walker.at.weight * mu_s / kPi * SunTransmittance(walker.at.ray.origin, random);
+    walker.light.sun += walker.at.weight * mu_s / kPi *
+                        SunTransmittanceAfter(walker.at.collisions, walker.at.ray.origin, random);
   }
   if (++walker.at.order >= max_order) return;
   GoOn(walker, {nullptr, {}}, SunLobe(phases_.Drawn(kTypicalRadius_um, 0.0)), random);
@@ -225,7 +285,8 @@ void CloudPathTracer::Follow(Walker& walker, PathRandom& random, int max_order) 
     walker.segments.pop_back();
     CloudRay& ray = walker.at.ray;
     const double ground_m = GroundDistance_m(ray);
-    const std::optional<double> distance_m = tracker_.Collision(ray, ground_m, random);
+    const std::optional<double> distance_m =
+        TrackerAfter(walker.at.collisions).Collision(ray, ground_m, random);
     if (!distance_m && ground_m == kUnbounded_m) {
       if (ray.direction.z >= 0.0) walker.light.sky += walker.at.weight;
       continue;
@@ -386,14 +447,17 @@ void CloudPathTracer::FollowPhoton(CloudRay ray, int max_order, PathRandom& rand
                                    PhotonCounter& counter) const {
   const double base_m = field_->base_altitude_m(), top_m = field_->top_altitude_m();
   double weight = 1.0;
+  int collisions = 0;
   for (int order = 0; weight > 0.0 && order <= max_order; ++order) {
-    const std::optional<double> distance_m = tracker_.Collision(ray, kUnbounded_m, random);
+    const std::optional<double> distance_m =
+        TrackerAfter(collisions).Collision(ray, kUnbounded_m, random);
     const double slope = ray.direction.z;
     if (distance_m) {
       ray.origin = ray.At(*distance_m);
-      counter.Add(FluxKind::kAbsorbed, ray.origin, weight * (1.0 - albedo_));
-      weight *= albedo_;
-      ray.direction = ScatteredFrom(ray.direction, PhaseAt(ray.origin, random), random);
+      const Event event = EventAt(ray, collisions++, random);
+      counter.Add(FluxKind::kAbsorbed, ray.origin, weight * (1.0 - event.albedo));
+      weight *= event.albedo;
+      ray.direction = ScatteredFrom(ray.direction, *event.phase, random);
     } else if (slope > 0.0) {
       counter.Add(FluxKind::kUpAtTop, ray.At((top_m - ray.origin.z) / slope), weight);
       return;

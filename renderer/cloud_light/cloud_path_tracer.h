@@ -10,7 +10,8 @@
 // Fluxes: photons start from sun or sky at the top of the field and are counted in columns where
 // they cross the planes through its top and base.
 //
-// The results have no bias and state their standard errors, from the scatter of independent batches
+// Where a bias of some percent is allowed, paths are shorter after some collisions (WithSimilarity).
+// Otherwise the results have no bias. They state their standard errors, from the scatter of independent batches
 // of kPathsPerBatch paths each. They are the same for any number of threads.
 #pragma once
 
@@ -18,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,6 +32,8 @@
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
+
+class CloudSimilarity;
 
 /// The sun above a field and the ground below.
 struct CloudSurroundings {
@@ -121,6 +125,12 @@ class CloudPathTracer {
   CloudPathTracer(const CloudField& field, CloudScatterers scatterers,
                   const CloudSurroundings& surroundings, bool uses_detail = false);
 
+  /// Returns a tracer whose paths are in the medium of cloud_similarity.h after some collisions. Throws
+  /// InputError for phase functions without a forward peak. Mean sunlight is within 2 % of that without
+  /// bias for suns from 12 degrees on, and within 25 % at 1 degree (asserted for 8 collisions).
+  /// @param collisions  true ones, in [1, 1000].
+  [[nodiscard]] CloudPathTracer WithSimilarity(int collisions) const;
+
   /// Returns the light along a ray from the eye, by as many threads as are free. Throws InputError
   /// for options or a ray that are not valid.
   [[nodiscard]] CloudRadiance Radiance(const CloudRay& ray,
@@ -149,17 +159,31 @@ class CloudPathTracer {
  private:
   struct Walker;
   struct Turn;
+  struct Event;
   class PhotonCounter;
 
   [[nodiscard]] double GroundDistance_m(const CloudRay& ray) const;
+  /// Returns whether paths are in the medium of similarity after a number of collisions.
+  [[nodiscard]] bool IsSimilarAfter(int collisions) const {
+    return similarity_ != nullptr && collisions >= true_collisions_;
+  }
+  [[nodiscard]] const CloudTracker& TrackerAfter(int collisions) const {
+    return IsSimilarAfter(collisions) ? similar_tracker_ : tracker_;
+  }
   [[nodiscard]] const PhaseFunction& PhaseAt(const glm::dvec3& point, PathRandom& random) const;
+  [[nodiscard]] Event EventAt(const CloudRay& ray, int collisions, PathRandom& random) const;
+  /// Returns the sunlight that an event scatters into the ray on which a path arrives.
+  [[nodiscard]] double SunFrom(const Event& event, const CloudRay& ray, PathRandom& random) const;
+  [[nodiscard]] double SunTransmittanceAfter(int collisions, const glm::dvec3& point,
+                                             PathRandom& random) const;
+  [[nodiscard]] double SunDepth(const glm::dvec3& point) const;
   void Follow(Walker& walker, PathRandom& random, int max_order) const;
   void Collide(Walker& walker, PathRandom& random, int max_order) const;
   void Reflect(Walker& walker, PathRandom& random, int max_order) const;
   /// Adds the next segments of a path from its vertex, and light of its side ray.
   void GoOn(Walker& walker, const Turn& turn, const atmosphere::reference::SunLobe& lobe,
             PathRandom& random) const;
-  [[nodiscard]] double SideRay(const glm::dvec3& from, const Turn& turn,
+  [[nodiscard]] double SideRay(const Walker& walker, const Turn& turn,
                                const atmosphere::reference::SunLobe& lobe,
                                PathRandom& random) const;
   [[nodiscard]] glm::dvec3 AroundSun(double to_sun, PathRandom& random) const;
@@ -171,6 +195,9 @@ class CloudPathTracer {
   CloudPhases phases_;
   double albedo_;
   CloudSurroundings surroundings_;
+  std::shared_ptr<const CloudSimilarity> similarity_;  // null: all collisions are true ones
+  CloudTracker similar_tracker_;
+  int true_collisions_ = 0;
 };
 
 }  // namespace alpenglow::renderer

@@ -49,6 +49,11 @@ class CloudTracker {
         uses_detail_(uses_detail),
         scale_(scale) {}
 
+  /// Returns a tracker of the same field with another scale.
+  [[nodiscard]] CloudTracker WithScale(double scale) const {
+    return {*field_, uses_detail_, scale};
+  }
+
   [[nodiscard]] double Extinction_per_m(const glm::dvec3& point) const {
     return scale_ * (uses_detail_ ? field_->DetailedExtinction_per_m(point)
                                   : field_->Extinction_per_m(point));

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/cloud_phase/forward_peak.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
-#include "renderer/cloud_phase/peak_moments.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -54,13 +55,14 @@ struct PeakFactors {
   std::vector<double> effective, broadened;  // [depth][degree]
 };
 
-PeakFactors PeakFactorsOf(const PeakMoments& moments, int degree, double fraction) {
+PeakFactors PeakFactorsOf(const PeakMoments& moments, double fraction,
+                          const std::vector<double>& peak) {
   const std::vector<double>& chi = moments.chi;
   PeakFactors factors;
   for (std::size_t i = 0; i < kDepths; ++i) {
     const double x = PeakDepthAt(i);
     for (std::size_t l = 0; l < chi.size(); ++l) {
-      const double a = static_cast<int>(l) <= degree ? 1.0 : chi[l] / fraction;
+      const double a = peak[l];
       factors.effective.push_back(moments.window[l] * fraction * (AllOrdersOfPeak(a, x) - a));
       factors.broadened.push_back(moments.window[l] * chi[l] * std::expm1(-x * (1.0 - a)));
     }
@@ -68,14 +70,44 @@ PeakFactors PeakFactorsOf(const PeakMoments& moments, int degree, double fractio
   return factors;
 }
 
+/// Returns the moments of the peak beyond a degree.
+std::vector<double> PeakBeyond(const PeakMoments& moments, int degree) {
+  const double fraction = moments.PeakFraction(degree);
+  std::vector<double> peak;
+  for (const double chi : moments.chi)
+    peak.push_back(static_cast<int>(peak.size()) <= degree ? 1.0 : chi / fraction);
+  return peak;
+}
+
 }  // namespace
 
 ForwardPeak::ForwardPeak(const PhaseFunction& phase, int degree)
-    : effective_(kAngles * kDepths), broadened_(kAngles * kDepths) {
+    : ForwardPeak(PeakMoments(phase), phase, degree) {}
+
+ForwardPeak::ForwardPeak(const PeakMoments& moments, const PhaseFunction& phase, int degree)
+    : ForwardPeak(phase, moments, moments.PeakFraction(degree), PeakBeyond(moments, degree)) {}
+
+ForwardPeak ForwardPeak::BesideLobe(const PhaseFunction& phase, double fraction, double g) {
+  if (!(fraction > 0.0 && fraction < 1.0)) {
+    throw InputError(fmt::format(
+        "a forward peak of clouds has {} of the light; it must have more than 0 and less than 1",
+        fraction));
+  }
   const PeakMoments moments(phase);
+  std::vector<double> peak;
+  double lobe = 1.0 - fraction;
+  for (const double chi : moments.chi) {
+    peak.push_back((chi - lobe) / fraction);
+    lobe *= g;
+  }
+  return {phase, moments, fraction, peak};
+}
+
+ForwardPeak::ForwardPeak(const PhaseFunction& phase, const PeakMoments& moments, double fraction,
+                         const std::vector<double>& peak)
+    : fraction_(fraction), effective_(kAngles * kDepths), broadened_(kAngles * kDepths) {
   const std::vector<double>& chi = moments.chi;
-  fraction_ = moments.PeakFraction(degree);
-  const PeakFactors factors = PeakFactorsOf(moments, degree, fraction_);
+  const PeakFactors factors = PeakFactorsOf(moments, fraction, peak);
   tbb::parallel_for(std::size_t{0}, kAngles, [&](std::size_t angle) {
     const std::vector<double> series =
         LegendreSeries(kPeakSeriesDegree, std::cos(PeakAngleAt(angle)));

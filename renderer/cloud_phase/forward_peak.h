@@ -17,6 +17,9 @@
 //   B(nu, x) = p(nu) + sum_l w_l chi_l (e^(-x (1 - a_l)) - 1) P_l(nu)
 //
 // A beam exp(-(1 - f) tau) times p itself would lose the light that the peak has turned a little.
+//
+// What the peak leaves may also be a lobe of Henyey and Greenstein, with the moments g'^l. The peak then
+// has the moments a_l = (chi_l - (1 - f) g'^l) / f.
 #pragma once
 
 #include <array>
@@ -24,6 +27,7 @@
 #include <vector>
 
 #include "atmosphere/medium/phase.h"
+#include "renderer/cloud_phase/peak_moments.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -35,6 +39,12 @@ class ForwardPeak {
   /// @param degree  L, in [0, 16]. Throws InputError beyond, and for a phase function without a
   /// peak, f outside (0, 1).
   ForwardPeak(const PhaseFunction& phase, int degree);
+
+  /// Returns the peak that leaves a lobe of Henyey and Greenstein. Throws InputError for a fraction
+  /// outside (0, 1).
+  /// @param g  of the lobe, in [0, 1).
+  [[nodiscard]] static ForwardPeak BesideLobe(const PhaseFunction& phase, double fraction,
+                                              double g);
 
   /// Returns f, the fraction of the scattered light in the peak.
   [[nodiscard]] double fraction() const { return fraction_; }
@@ -66,6 +76,11 @@ class ForwardPeak {
   [[nodiscard]] Angle AtAngle(double cos_scattering) const;
 
  private:
+  ForwardPeak(const PeakMoments& moments, const PhaseFunction& phase, int degree);
+  /// @param peak  the moments a_l.
+  ForwardPeak(const PhaseFunction& phase, const PeakMoments& moments, double fraction,
+              const std::vector<double>& peak);
+
   [[nodiscard]] static double At(const std::vector<float>& table, double cos_scattering,
                                  double depth);
 

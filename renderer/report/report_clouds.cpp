@@ -74,9 +74,12 @@ ReadyCloudMethod ReadyMoments(const CloudUnderSun& under, const CloudLightOption
   return {[light](const CloudRay& ray) { return light.Radiance(ray); }, light.bytes()};
 }
 
+CloudPathTracer TracerUnder(const CloudUnderSun& under) {
+  return {*under.field, under.scatterers, under.surroundings};
+}
+
 /// Returns a method of `paths` paths for each ray. Sky and ground behind clouds are part of its light.
-ReadyCloudMethod ReadyPaths(const CloudUnderSun& under, std::size_t paths) {
-  const CloudPathTracer tracer(*under.field, under.scatterers, under.surroundings);
+ReadyCloudMethod ReadyPaths(const CloudPathTracer& tracer, std::size_t paths) {
   return {[tracer, paths](const CloudRay& ray) {
             const CloudRadiance light = TracedLight(tracer, ray, SeedOf(ray), 1, paths);
             return CloudRayLight{.sun = light.sun.value,
@@ -100,7 +103,7 @@ struct CloudMethod {
 };
 
 /// The methods, in the order of the tables. A new line is a new method.
-constexpr std::array<CloudMethod, 7> kCloudMethods{
+constexpr std::array<CloudMethod, 8> kCloudMethods{
     {{"single", "single scattering", "", MethodOrigin::kLiterature,
       [](const CloudUnderSun& under) { return ReadyOctaves(under, 1); }},
      {"octaves", "octaves (Wrenninge et al. 2013)", "8", MethodOrigin::kLiterature,
@@ -113,10 +116,14 @@ constexpr std::array<CloudMethod, 7> kCloudMethods{
       [](const CloudUnderSun& under) {
         return ReadyMoments(under, {.method = CloudLightMethod::kHybrid});
       }},
+     {"similarity", "paths by similarity", "8 collisions, 251 paths", MethodOrigin::kOurs,
+      [](const CloudUnderSun& under) {
+        return ReadyPaths(TracerUnder(under).WithSimilarity(8), 251);
+      }},
      {"paths16", "path tracing", "16 paths", MethodOrigin::kOurs,
-      [](const CloudUnderSun& under) { return ReadyPaths(under, 16); }},
+      [](const CloudUnderSun& under) { return ReadyPaths(TracerUnder(under), 16); }},
      {"paths251", "path tracing", "251 paths", MethodOrigin::kOurs,
-      [](const CloudUnderSun& under) { return ReadyPaths(under, 251); }}}};
+      [](const CloudUnderSun& under) { return ReadyPaths(TracerUnder(under), 251); }}}};
 
 /// A pixel with its light by the reference.
 struct CloudCase {
@@ -145,10 +152,6 @@ struct CloudScene {
   CloudScene(const CloudScene&) = delete;
   CloudScene& operator=(const CloudScene&) = delete;
 
-  [[nodiscard]] CloudPathTracer TracerUnder(std::size_t sun) const {
-    return {field, suns[sun].scatterers, suns[sun].surroundings};
-  }
-
   CloudField field;
   std::vector<CloudView> views;
   std::vector<CloudUnderSun> suns;  // refer to the field
@@ -176,7 +179,7 @@ void SolveCloudPixels(CloudStudy& study, const CloudScene& scene, const CloudStu
   const std::vector<CloudPixel> pixels = CloudPixelsOf(scene.field, scene.views, size.raster);
   std::vector<CloudPathTracer> tracers;
   for (std::size_t sun = 0; sun < scene.suns.size(); ++sun)
-    tracers.push_back(scene.TracerUnder(sun));
+    tracers.push_back(TracerUnder(scene.suns[sun]));
   study.SolveCases(pixels.size(), [&](std::size_t r, std::size_t i) {
     const CloudRadiance traced =
         TracedLight(tracers[r], pixels[i].ray, i + 1, kReferenceBatches, size.paths_per_batch);
@@ -265,7 +268,7 @@ class CloudPictures {
     return rays;
   }
   [[nodiscard]] ErrorPictures Traced(const CloudScene& scene, const CloudStudySize& size) const {
-    const CloudPathTracer tracer = scene.TracerUnder(kPictureSun);
+    const CloudPathTracer tracer = TracerUnder(scene.suns[kPictureSun]);
     std::vector<CloudEstimate> traced(rays_.size());
     ForEachCase(rays_.size(), [&](std::size_t i) {
       traced[i] = WholeCloudLight(

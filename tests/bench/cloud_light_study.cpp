@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@
 #include "renderer/cloud_phase/droplet_phase.h"
 #include "renderer/clouds/cloud_generator.h"
 #include "renderer/report/cloud_views.h"
+#include "renderer/report/traced_light.h"
 #include "tests/bench/processor_time.h"
 
 namespace alpenglow::renderer {
@@ -37,6 +39,12 @@ constexpr int kRepeats = 50;
 // True collisions and paths of rays; without collisions all are true ones.
 constexpr std::array<CloudHybridOptions, 5> kPaths{
     {{2, 16}, {2, 64}, {2, 128}, {8, 128}, {std::nullopt, 64}}};
+
+// True collisions of paths that then are in the medium of similarity, and their number for a ray.
+constexpr std::array<int, 4> kSimilarAfter{2, 4, 8, 16};
+constexpr std::size_t kSimilarPaths = 2008;
+
+using LightOfRay = std::function<CloudRayLight(const CloudRay&)>;
 
 struct StudyPixel {
   std::size_t view;
@@ -68,13 +76,12 @@ std::vector<StudyPixel> TracedPixels(const CloudField& field, const CloudPathTra
 
 /// Returns the noise of the whole light, relative as in CloudErrors, from rays a millimetre above:
 /// they have other random numbers.
-double NoiseOf(const CloudLight& light, const std::vector<StudyPixel>& pixels,
+double NoiseOf(const LightOfRay& light, const std::vector<StudyPixel>& pixels,
                const std::vector<CloudRayLight>& found, const std::vector<double>& mean_whole) {
   double squares = 0.0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const auto& [view, ray, traced] = pixels[i];
-    const CloudRayLight again =
-        light.Radiance({ray.origin + glm::dvec3(0.0, 0.0, 1e-3), ray.direction});
+    const CloudRayLight again = light({ray.origin + glm::dvec3(0.0, 0.0, 1e-3), ray.direction});
     const double scale = std::max(WholeCloudLight(traced).value, kDarkestCloud * mean_whole[view]);
     const double change = WholeCloudLight(found[i], ray) - WholeCloudLight(again, ray);
     squares += 0.5 * std::pow(change / scale, 2);
@@ -82,14 +89,18 @@ double NoiseOf(const CloudLight& light, const std::vector<StudyPixel>& pixels,
   return std::sqrt(squares / static_cast<double>(pixels.size()));
 }
 
+LightOfRay RadianceOf(const CloudLight& light) {
+  return [&light](const CloudRay& ray) { return light.Radiance(ray); };
+}
+
 /// @param repeats  for the time.
-void PrintErrors(const CloudLight& light, const std::vector<CloudView>& views,
+void PrintErrors(const LightOfRay& light, const std::vector<CloudView>& views,
                  const std::vector<StudyPixel>& pixels, int repeats) {
   const Stopwatch time;
   std::vector<CloudRayLight> found;
   for (int i = 0; i < repeats; ++i) {
     found.clear();
-    for (const StudyPixel& pixel : pixels) found.push_back(light.Radiance(pixel.ray));
+    for (const StudyPixel& pixel : pixels) found.push_back(light(pixel.ray));
   }
   const double us = 1e6 * time.processor_s() / static_cast<double>(pixels.size()) / repeats;
   std::vector<double> mean(views.size()), mean_whole(views.size()), count(views.size());
@@ -138,6 +149,26 @@ void PrintPaths(const CloudField& field, const CloudScatterers& scatterers,
                *options.moments.cell_m, NameOf(options.method),
                paths.collisions ? std::to_string(*paths.collisions) : "all", paths.paths,
                time.processor_s(), time.wall_s());
+    PrintErrors(RadianceOf(light), views, pixels, 1);
+  }
+}
+
+/// Prints a row for each number of true collisions. Paths need no solution.
+void PrintSimilarity(const CloudPathTracer& tracer, const std::vector<CloudView>& views,
+                     const std::vector<StudyPixel>& pixels) {
+  for (const int collisions : kSimilarAfter) {
+    const Stopwatch time;
+    const CloudPathTracer similar = tracer.WithSimilarity(collisions);
+    fmt::print("| similarity after {} collisions, {} paths | {:.2f}, {:.2f} | | 0 |", collisions,
+               kSimilarPaths, time.processor_s(), time.wall_s());
+    const auto light = [&](const CloudRay& ray) {
+      const CloudRadiance found =
+          similar.Radiance(ray, {.seed = SeedOf(ray), .paths = kSimilarPaths});
+      return CloudRayLight{.sun = found.sun.value,
+                           .sky = found.sky.value,
+                           .ground = found.ground.value,
+                           .scaled_transmittance = 0.0};
+    };
     PrintErrors(light, views, pixels, 1);
   }
 }
@@ -181,6 +212,7 @@ void RunStudy(const StudyCase& study) {
       "bias % | whole: rms (noise), bias % | sky |");
   for (const CloudView& view : views) fmt::print(" {}: sun / whole |", view.name);
   fmt::print("\n");
+  PrintSimilarity(tracer, views, pixels);
   for (const double cell_m : study.cells_m) {
     for (const bool is_fitted : {false, true}) {
       CloudLightOptions with;
@@ -192,7 +224,7 @@ void RunStudy(const StudyCase& study) {
                  is_fitted ? "fitted" : "1", time.processor_s(), time.wall_s(),
                  light.sun_moments().sweeps, light.sky_moments().sweeps,
                  static_cast<double>(light.bytes()) / 1e6);
-      PrintErrors(light, views, pixels, kRepeats);
+      PrintErrors(RadianceOf(light), views, pixels, kRepeats);
       if (!is_fitted) {
         const double mu_s = surroundings.to_sun.z;
         fmt::print("  fluxes: up {:.4f}, down {:.4f}, direct {:.4f}\n",

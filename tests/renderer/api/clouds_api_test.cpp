@@ -329,6 +329,21 @@ TEST(ApiClouds, PathsOfOneOrderScatterOnce) {
   EXPECT_GT(all.sun.standard_error, 0.0);
 }
 
+// The stated bias is 1 %; the rest are errors of the paths.
+TEST(ApiClouds, SimilarPathsHaveTheLightOfPaths) {
+  const CloudPaths paths(CloudField(Ball(true)), kSun, {.ground_albedo = 0.3});
+  const CloudPaths similar = paths.WithSimilarity();
+  const CloudPathOptions options{.paths = tests::ScaledDown<std::size_t>(100000, 20000)};
+  const CloudRay ray{{640.0, 640.0, 3000.0}, {.up = -1.0}};
+  const TracedCloudRadiance exact = paths.Radiance(ray, options);
+  const TracedCloudRadiance found = similar.Radiance(ray, options);
+  EXPECT_NE(found.sun.value, exact.sun.value);
+  const double error = std::hypot(found.sun.standard_error, exact.sun.standard_error);
+  EXPECT_LT(error, 0.02 * exact.sun.value) << "the test must be able to fail";
+  EXPECT_NEAR(found.sun.value, exact.sun.value, 0.01 * exact.sun.value + 3.0 * error);
+  EXPECT_THROW(static_cast<void>(paths.WithSimilarity(0)), InputError);
+}
+
 TEST(ApiClouds, DropletsAndIceHaveTheirPhaseFunctions) {
   CloudGrid grid = Ball(true);
   const CloudRay ray{{640.0, 640.0, 3000.0}, {.up = -1.0}};

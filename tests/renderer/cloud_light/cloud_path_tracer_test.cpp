@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/base/error.h"
@@ -46,6 +48,14 @@ void ExpectWithin(double expected, const CloudEstimate& estimate, double errors,
   const double error = std::hypot(estimate.standard_error, reference_error);
   EXPECT_NEAR(estimate.value, expected, errors * error + 1e-12) << "standard error " << error;
   EXPECT_LT(estimate.standard_error, 0.1 * std::max(std::abs(expected), 0.01))
+      << "the test must be able to fail";
+}
+
+/// Expects that two estimates agree within a share and three standard errors.
+void ExpectRatio(const CloudEstimate& found, const CloudEstimate& expected, double share) {
+  const double error = std::hypot(found.standard_error, expected.standard_error);
+  EXPECT_NEAR(found.value, expected.value, share * expected.value + 3.0 * error);
+  EXPECT_LT(error, std::max(0.025, 0.2 * share) * expected.value)
       << "the test must be able to fail";
 }
 
@@ -398,6 +408,97 @@ TEST(CloudPaths, PhaseFunctionsDependOnTheRadius) {
   EXPECT_EQ(phases.Drawn(10.0, 0.51).g, 0.0);
 }
 
+// --- Similarity -----------------------------------------------------------------------------------
+
+/// Returns rays from below and above through spheres, not near the sun.
+std::vector<CloudRay> RaysThroughSpheres(const CloudField& field, const glm::dvec3& to_sun,
+                                         std::size_t count) {
+  const CloudTracker tracker(field, false);
+  std::vector<CloudRay> rays;
+  for (int i = 1; rays.size() < count; ++i) {
+    const double up = i % 2 == 0 ? 1.0 : -1.0;
+    const glm::dvec3 look = Towards(up * (20.0 + 70.0 * Halton(i, 5)), 360.0 * Halton(i, 7));
+    const CloudRay ray{{tests::SphereShape::kPeriod_m * Halton(i, 2),
+                        tests::SphereShape::kPeriod_m * Halton(i, 3), up > 0.0 ? 2.0 : 4000.0},
+                       look};
+    if (glm::dot(look, to_sun) > 0.7) continue;
+    if (tracker.OpticalDepth(ray, 1e6, 4.0) >= 0.3) rays.push_back(ray);
+  }
+  return rays;
+}
+
+/// Returns the mean over rays.
+CloudRadiance MeanLight(const CloudPathTracer& tracer, const std::vector<CloudRay>& rays) {
+  const auto add = [&](CloudEstimate& sum, const CloudEstimate& each) {
+    const double share = 1.0 / static_cast<double>(rays.size());
+    sum.value += share * each.value;
+    sum.standard_error = std::hypot(sum.standard_error, share * each.standard_error);
+  };
+  CloudRadiance mean;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const CloudRadiance light =
+        tracer.Radiance(rays[i], {.seed = i, .paths = tests::ScaledDown<std::size_t>(4016, 2008)});
+    add(mean.sun, light.sun);
+    add(mean.sky, light.sky);
+    add(mean.ground, light.ground);
+  }
+  return mean;
+}
+
+// The phase function itself at the last true collision, instead of the broadened one, loses 4 to 18 %
+// of the light. 2 % are 1 % of similarity and three standard errors.
+TEST(CloudPaths, SimilarityKeepsTheMeanLight) {
+  const glm::dvec3 to_sun = Towards(35.0, 20.0);
+  const CloudField field = tests::SphereClouds(0.05);
+  const std::vector<CloudRay> rays =
+      RaysThroughSpheres(field, to_sun, tests::ScaledDown<std::size_t>(10, 6));
+  const CloudPathTracer tracer(field, Droplets(0.85, 0.97), {to_sun, 0.3});
+  const CloudRadiance exact = MeanLight(tracer, rays);
+  for (const int collisions : tests::ScaledDown(std::vector{2, 8}, {4})) {
+    SCOPED_TRACE(std::to_string(collisions) + " collisions");
+    const CloudRadiance found = MeanLight(tracer.WithSimilarity(collisions), rays);
+    ExpectRatio(found.sun, exact.sun, 0.02);
+    ExpectRatio(found.sky, exact.sky, 0.02);
+    ExpectRatio(found.ground, exact.ground, 0.02);
+  }
+}
+
+TEST(CloudPaths, SimilarityKeepsTheFluxes) {
+  const CloudField field = tests::SphereClouds(0.05);
+  const CloudPathTracer tracer(field, Droplets(0.85, 0.97), {Towards(35.0, 0.0), 0.5});
+  const CloudFluxOptions options{.paths = {.paths = tests::ScaledDown<std::size_t>(400000, 60000)}};
+  const CloudColumnFluxes exact = tracer.Fluxes(CloudSource::kSun, options).mean;
+  const CloudFluxes found = tracer.WithSimilarity(4).Fluxes(CloudSource::kSun, options);
+  ExpectRatio(found.mean.up_at_top, exact.up_at_top, 0.01);
+  ExpectRatio(found.mean.down_at_base, exact.down_at_base, 0.01);
+  ExpectRatio(found.mean.absorbed, exact.absorbed, 0.02);
+  ExpectWithin(1.0, found.energy, 4.0);
+}
+
+TEST(CloudPaths, SimilarityAfterManyCollisionsChangesNothing) {
+  const CloudField field = tests::SphereClouds(0.05);
+  const CloudPathTracer tracer(field, Droplets(), {Towards(35.0, 20.0)});
+  const CloudRay ray = RaysThroughSpheres(field, Towards(35.0, 20.0), 1).front();
+  const CloudPathOptions options{.paths = 4016, .max_order = 20};
+  EXPECT_EQ(tracer.WithSimilarity(21).Radiance(ray, options), tracer.Radiance(ray, options));
+}
+
+// Light that droplets turn by some degrees leaves the long way of a low beam, which similarity takes
+// for straight: in a run light was 0.3, 5 and 19 % too bright at 12, 3.5 and 1 degrees.
+TEST(CloudPaths, SimilarityIsLessTrueForLowerSuns) {
+  const CloudField field = tests::SphereClouds(0.05);
+  for (const auto& [sun_deg, bound] : {std::pair(12.0, 0.02), std::pair(1.0, 0.25)}) {
+    SCOPED_TRACE(std::to_string(sun_deg) + " degrees");
+    const glm::dvec3 to_sun = Towards(sun_deg, 20.0);
+    const CloudLowSun low_sun(field, Towards(std::min(sun_deg, 9.0), 20.0));
+    const CloudPathTracer tracer(field, Droplets(),
+                                 {.to_sun = to_sun, .low_sun = sun_deg < 3.0 ? &low_sun : nullptr});
+    const std::vector<CloudRay> rays =
+        RaysThroughSpheres(field, to_sun, tests::ScaledDown<std::size_t>(10, 6));
+    ExpectRatio(MeanLight(tracer.WithSimilarity(8), rays).sun, MeanLight(tracer, rays).sun, bound);
+  }
+}
+
 TEST(CloudPaths, RefuseWhatIsOutOfRange) {
   const CloudField field = tests::SphereClouds(0.05);
   const CloudField open = tests::SphereClouds(0.05, false);
@@ -412,6 +513,9 @@ TEST(CloudPaths, RefuseWhatIsOutOfRange) {
   EXPECT_THROW((void)tracer.Radiance({glm::dvec3(0.0), glm::dvec3(0.0)}), InputError);
   EXPECT_THROW((void)tracer.Radiance({}, {.paths = 0}), InputError);
   EXPECT_THROW((void)tracer.Radiance({}, {.max_order = 0}), InputError);
+  EXPECT_THROW((void)tracer.WithSimilarity(0), InputError);
+  EXPECT_THROW((void)tracer.WithSimilarity(1001), InputError);
+  EXPECT_THROW((void)CloudPathTracer(field, Droplets(0.0), {}).WithSimilarity(8), InputError);
   EXPECT_THROW((void)tracer.Fluxes(CloudSource::kSky), InputError);
   EXPECT_THROW((void)tracer.Fluxes(CloudSource::kSun, {.columns = {0, 1}}), InputError);
   EXPECT_THROW((void)tracer.Fluxes(CloudSource::kSun, {.columns = {4096, 4096}}), InputError);

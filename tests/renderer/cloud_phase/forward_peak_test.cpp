@@ -78,6 +78,21 @@ TEST(ForwardPeak, BroadenedPhaseKeepsTheLight) {
   }
 }
 
+// The moments of the peak are (g^l - (1 - f) g'^l) / f; the two of lowest degree are 1.
+TEST(ForwardPeak, BroadenedPhaseBesideALobeKeepsTheLight) {
+  constexpr double kFraction = kG * kG, kRest = kG / (1.0 + kG);
+  const ForwardPeak peak = ForwardPeak::BesideLobe(tests::LobeOf(kG), kFraction, kRest);
+  EXPECT_EQ(peak.fraction(), kFraction);
+  for (const double x : {0.01, 0.5, 2.0, 8.0}) {
+    for (const unsigned degree : {0U, 1U, 2U, 4U, 7U, 12U}) {
+      const double moment = std::pow(kG, degree);
+      const double a = (moment - (1.0 - kFraction) * std::pow(kRest, degree)) / kFraction;
+      const double found = Coefficient([&](double nu) { return peak.Broadened(nu, x); }, degree);
+      EXPECT_NEAR(found, moment * std::exp(-x * (1.0 - a)), 0.002) << x << " " << degree;
+    }
+  }
+}
+
 TEST(ForwardPeak, ThinWaysSeeThePhaseFunctionItself) {
   const PhaseFunction phase = tests::LobeOf(kG);
   const ForwardPeak peak(phase, kDegree);
@@ -119,6 +134,10 @@ TEST(ForwardPeak, RefusesPhaseFunctionsWithoutAPeak) {
   EXPECT_THROW(ForwardPeak(tests::LobeOf(-0.5), 2), InputError);
   EXPECT_THROW(ForwardPeak(tests::LobeOf(0.8), 17), InputError);
   EXPECT_THROW(ForwardPeak(tests::LobeOf(0.8), -1), InputError);
+  for (const double fraction : {0.0, 1.0, -0.2}) {
+    EXPECT_THROW(static_cast<void>(ForwardPeak::BesideLobe(tests::LobeOf(0.8), fraction, 0.4)),
+                 InputError);
+  }
 }
 
 }  // namespace
