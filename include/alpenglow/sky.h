@@ -10,6 +10,7 @@
 #include <alpenglow/atmosphere.h>
 #include <alpenglow/export.h>
 #include <alpenglow/geometry.h>
+#include <alpenglow/progress.h>
 #include <alpenglow/spectrum.h>
 
 namespace ALPENGLOW_EXPORT alpenglow {
@@ -34,8 +35,11 @@ struct AirBetween {
 class Sky {
  public:
   /// Solves multiple scattering, on all processors. This is slow compared with all other functions:
-  /// make one sky per atmosphere.
-  explicit Sky(const Atmosphere& atmosphere);
+  /// make one sky per atmosphere. Throws Cancelled if `progress` ends the work.
+  /// @param atmosphere  air of the sky.
+  /// @param progress    receives an estimate of the fraction that is done, as the number of orders of
+  ///   scattering that the air needs is not known before; may be empty.
+  explicit Sky(const Atmosphere& atmosphere, const ProgressFunction& progress = {});
 
   /// Returns the atmosphere.
   [[nodiscard]] const Atmosphere& atmosphere() const;

@@ -43,5 +43,8 @@ struct AltitudeAndZenith {
 /// fraction of the parts that are done to `progress`. It throws Cancelled if that returns false. The
 /// function holds a copy of `progress`, which may be empty.
 [[nodiscard]] std::function<void()> PartDone(ProgressFunction progress, std::size_t parts);
+/// Returns such a function for another fraction of the number of parts that are done.
+[[nodiscard]] std::function<void()> PartDone(ProgressFunction progress,
+                                             std::function<double(std::size_t done)> fraction_of);
 
 }  // namespace alpenglow

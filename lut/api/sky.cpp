@@ -14,6 +14,7 @@
 #include "atmosphere/base/finite.h"
 #include "lut/api/conversions.h"
 #include "lut/api/sky_parts.h"
+#include "lut/multiple_scattering/successive_orders.h"
 #include "lut/version.h"
 
 namespace alpenglow {
@@ -73,10 +74,20 @@ const Spectrum& Checked(const Spectrum& light) {
   return light;
 }
 
-lut::TableFolder SolvedWithoutTables(const atmosphere::Medium& medium) {
+// Clear air needs some six orders, thick air more than a hundred: the estimate slows down.
+double EstimatedFraction(double orders) { return orders / (orders + 2.0); }
+
+lut::TableFolder SolvedWithoutTables(const atmosphere::Medium& medium,
+                                     const ProgressFunction& progress) {
+  const lut::MultipleScatteringOptions options = lut::OptionsFor(medium);
+  const auto parts = static_cast<double>(lut::PartsOfOrder(medium, options));
   lut::TableFolder tables;
   tables.medium = medium;
-  tables.multiple_scattering.emplace(medium, lut::OptionsFor(medium));
+  tables.multiple_scattering.emplace(
+      lut::SolvedStepwise(medium, options, PartDone(progress, [parts](std::size_t done) {
+                            return EstimatedFraction(static_cast<double>(done) / parts);
+                          })));
+  if (progress && !progress(1.0)) throw Cancelled();
   return tables;
 }
 
@@ -125,8 +136,8 @@ Sky SkyParts::Made(const Atmosphere& atmosphere, lut::TableFolder tables) {
       Sky::State{atmosphere, lut::TableLookup(std::move(tables))}));
 }
 
-Sky::Sky(const Atmosphere& atmosphere)
-    : Sky(SkyParts::Made(atmosphere, SolvedWithoutTables(atmosphere.medium()))) {}
+Sky::Sky(const Atmosphere& atmosphere, const ProgressFunction& progress)
+    : Sky(SkyParts::Made(atmosphere, SolvedWithoutTables(atmosphere.medium(), progress))) {}
 
 Sky::Sky(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 

@@ -108,8 +108,10 @@ void WarnOfMissingOrders(const Medium& medium, int orders) {
       medium.name.empty() ? "the medium" : medium.name, orders));
 }
 
-SolvedOrders Solved(const Medium& medium, const MultipleScatteringOptions& options) {
-  SolvedOrders solved = SolveSuccessiveOrders(Checked(medium, options), options);
+SolvedOrders Solved(
+    const Medium& medium, const MultipleScatteringOptions& options,
+    const OrderPartDone& part_done = [] {}) {
+  SolvedOrders solved = SolveSuccessiveOrders(Checked(medium, options), options, part_done);
   if (options.delta_m) solved.values = WithBeam(medium, options, 1.0F, std::move(solved.values));
   return solved;
 }
@@ -173,6 +175,11 @@ MultipleScatteringOptions RaisedFor(const Medium& medium, MultipleScatteringOpti
   }
   options.delta_m = needed.delta_m;
   return options;
+}
+
+MultipleScattering SolvedStepwise(const Medium& medium, const MultipleScatteringOptions& options,
+                                  const OrderPartDone& part_done) {
+  return {medium, options, Solved(medium, options, part_done)};
 }
 
 MultipleScattering::MultipleScattering(const Medium& medium,

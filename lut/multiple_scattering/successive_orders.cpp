@@ -311,8 +311,10 @@ class Block {
  public:
   /// @param later  the marches of the orders after the second.
   Block(const MomentMarches& marches, const MomentMarches& later,
-        const MultipleScatteringOptions& options, std::size_t first_band)
+        const MultipleScatteringOptions& options, const OrderPartDone& part_done,
+        std::size_t first_band)
       : options_(options),
+        part_done_(part_done),
         layout_(marches.grid()),
         twilight_(TwilightAtNodes(marches.grid())),
         transport_(marches, first_band),
@@ -340,6 +342,7 @@ class Block {
   [[nodiscard]] Sum SumAfter(const Field& order, const Field& sum_before, int most) const;
 
   const MultipleScatteringOptions& options_;
+  const OrderPartDone& part_done_;
   Layout layout_;
   std::vector<float> twilight_;
   Transport transport_, later_;
@@ -363,8 +366,10 @@ double Block::LargestShare(const Field& part, const Field& whole) const {
 // Returns the light that follows from light by one more scattering or reflection.
 Field Block::After(const Transport& transport, const Field& field, bool is_light) const {
   Field next = Empty();
-  tbb::parallel_for(std::size_t{0}, layout_.nodes / layout_.suns,
-                    [&](std::size_t i) { transport.NextOrder(i, field, next, is_light); });
+  tbb::parallel_for(std::size_t{0}, layout_.nodes / layout_.suns, [&](std::size_t i) {
+    transport.NextOrder(i, field, next, is_light);
+    part_done_();
+  });
   return next;
 }
 
@@ -649,7 +654,13 @@ MultipleScatteringOptions OfLaterOrders(MultipleScatteringOptions options) {
 
 }  // namespace
 
-SolvedOrders SolveSuccessiveOrders(const Medium& medium, const MultipleScatteringOptions& options) {
+std::size_t PartsOfOrder(const Medium& medium, const MultipleScatteringOptions& options) {
+  const std::size_t blocks = (medium.wavelengths_nm.size() + kBlockBands - 1) / kBlockBands;
+  return blocks * static_cast<std::size_t>(options.altitudes);
+}
+
+SolvedOrders SolveSuccessiveOrders(const Medium& medium, const MultipleScatteringOptions& options,
+                                   const OrderPartDone& part_done) {
   const DeltaScaledMedium rest = ScatteringMedium(medium, options);
   const SingleScattering<float> air(rest.medium);
   const MomentMarches marches(air, options, rest.chi);
@@ -658,7 +669,7 @@ SolvedOrders SolveSuccessiveOrders(const Medium& medium, const MultipleScatterin
   std::vector<Block> blocks;
   std::vector<Field> first;
   for (std::size_t band = 0; band < bands; band += kBlockBands) {
-    blocks.emplace_back(marches, later, options, band);
+    blocks.emplace_back(marches, later, options, part_done, band);
     first.push_back(blocks.back().Empty());
   }
   std::optional<MissedPeak> peak;
@@ -671,6 +682,7 @@ SolvedOrders SolveSuccessiveOrders(const Medium& medium, const MultipleScatterin
       for (std::size_t block = 0; block < blocks.size(); ++block)
         blocks[block].transport().Project(march, altitude, sunlight, first[block]);
     }
+    for (std::size_t block = 0; block < blocks.size(); ++block) part_done();
   });
   SolvedOrders solved;
   const std::size_t channels =

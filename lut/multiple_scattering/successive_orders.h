@@ -14,12 +14,28 @@
 // node is below the tolerance and what one more scattering changes is below a tenth of it.
 #pragma once
 
+#include <functional>
+
 #include "lut/multiple_scattering/multiple_scattering.h"
 
 namespace alpenglow::lut {
 
+/// Is called after each part of the solution, from any thread, many times for each order; the number
+/// of orders is not known before. An exception ends the work.
+using OrderPartDone = std::function<void()>;
+
 /// Solves for all orders. The result does not depend on the number of threads.
-[[nodiscard]] SolvedOrders SolveSuccessiveOrders(const Medium& medium,
-                                                 const MultipleScatteringOptions& options);
+[[nodiscard]] SolvedOrders SolveSuccessiveOrders(
+    const Medium& medium, const MultipleScatteringOptions& options,
+    const OrderPartDone& part_done = [] {});
+
+/// Returns the number of parts of an order.
+[[nodiscard]] std::size_t PartsOfOrder(const Medium& medium,
+                                       const MultipleScatteringOptions& options);
+
+/// Returns MultipleScattering(medium, options), and calls `part_done` meanwhile.
+[[nodiscard]] MultipleScattering SolvedStepwise(const Medium& medium,
+                                                const MultipleScatteringOptions& options,
+                                                const OrderPartDone& part_done);
 
 }  // namespace alpenglow::lut

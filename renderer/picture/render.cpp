@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "lut/api/conversions.h"
 #include "lut/cli/program.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effects/effect_choice.h"
@@ -149,6 +150,8 @@ CountedPicture TileRenderer::Picture() const {
 void TileRenderer::AddRows(PixelWriter& writer) const {
   const int rays = frame_.settings().samples_per_pixel;
   std::atomic<int> rows{0};
+  const auto row_done =
+      PartDone(frame_.settings().pixels_done, static_cast<std::size_t>(frame_.settings().height));
   tbb::parallel_for(0, frame_.settings().height, [&](int y) {
     for (int x = 0; x < frame_.settings().width; ++x) {
       if (Interrupted() || frame_.settings().stop.stop_requested()) return;
@@ -158,6 +161,7 @@ void TileRenderer::AddRows(PixelWriter& writer) const {
     }
     if (frame_.settings().progress != nullptr)
       frame_.settings().progress->Part(static_cast<double>(++rows) / frame_.settings().height);
+    row_done();
   });
 }
 
@@ -174,10 +178,12 @@ void TileRenderer::AddTiles(PixelWriter& writer) const {
   const double floor = NoiseFloor();
   const UnoccludedSkyPixels open_sky(shader_);
   std::atomic<int> done{0};
+  const auto tile_done = PartDone(settings.pixels_done, static_cast<std::size_t>(tiles));
   tbb::parallel_for(0, tiles, [&](int i) {
     const int x0 = i % columns * Tile::kSide, y0 = i / columns * Tile::kSide;
     AddTile(floor, x0, y0, open_sky, writer);
     if (settings.progress != nullptr) settings.progress->Part(static_cast<double>(++done) / tiles);
+    tile_done();
   });
 }
 
@@ -325,6 +331,9 @@ SceneRenderer::~SceneRenderer() = default;
 
 const Medium& SceneRenderer::medium() const { return scene_->medium(); }
 double SceneRenderer::eye_height_m() const { return scene_->ground().eye_height_m; }
+double SceneRenderer::GroundHeightAt(const Place& place) const {
+  return GroundHeightUnder(scene_->ground(), place);
+}
 const std::string& SceneRenderer::terrain_message() const { return scene_->terrain_message(); }
 
 SunInSky SceneRenderer::ApparentSun(const CameraSample& camera_sample) const {

@@ -75,6 +75,9 @@ struct RenderSettings {
   LampSettings lamps = {};
   Progress* progress = nullptr;  // receives the steps, and the finished rows of pixels
   std::stop_token stop = {};     // checked between pixels: cancels the picture
+  /// Receives the fraction of the pixels that are done; may be empty. The picture ends with Cancelled
+  /// when it returns false.
+  ProgressFunction pixels_done = {};
 };
 
 /// Thrown when a picture is cancelled (RenderSettings::stop).
@@ -161,6 +164,8 @@ class SceneRenderer {
   [[nodiscard]] const Medium& medium() const;
   /// Returns the height of the eye over the ellipsoid [m].
   [[nodiscard]] double eye_height_m() const;
+  /// Returns the height of the ground over the ellipsoid at a place [m] (GroundHeightUnder).
+  [[nodiscard]] double GroundHeightAt(const Place& place) const;
   /// Returns what was noted on reading the terrain (voids found and filled) and what is draped over
   /// it (values out of range); empty: nothing.
   [[nodiscard]] const std::string& terrain_message() const;

@@ -4,8 +4,10 @@
 #include <alpenglow/version.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
@@ -125,6 +127,25 @@ TEST(Sky, AerialPerspectiveKeepsItsStatedErrors) {
       }
     }
   }
+}
+
+TEST(Sky, TellsTheProgressOfItsSolutionAndEndsWhenItIsCancelled) {
+  std::vector<double> fractions;
+  const auto note = [&](double fraction) {
+    fractions.push_back(fraction);
+    return true;
+  };
+  const Sky sky(Atmosphere(), note);
+  EXPECT_EQ(sky.Radiance(kEye, {.up = 1.0}, Suns()[0]),
+            Earth().Radiance(kEye, {.up = 1.0}, Suns()[0]));
+  EXPECT_GT(fractions.size(), 50U);
+  EXPECT_EQ(std::ranges::adjacent_find(fractions, std::greater_equal<>()), fractions.end());
+  EXPECT_GT(fractions.front(), 0.0);
+  EXPECT_EQ(fractions.back(), 1.0);
+  int calls = 0;
+  const auto cancel = [&](double) { return ++calls > 5; };
+  EXPECT_THROW((void)Sky(Atmosphere(), cancel), Cancelled);
+  EXPECT_EQ(calls, 1) << "no call follows the one that cancels";
 }
 
 TEST(Sky, ManyRaysEqualSingleRays) {

@@ -3,8 +3,14 @@
 #include <alpenglow/scene.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "renderer/picture/render.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -54,6 +60,112 @@ TEST_F(ApiScene, IsRenderedAsByTheLayerBelow) {
   EXPECT_EQ(Scene::Read(folder_ / "sea.toml").Render(time, kSmall).rgb, image.rgb);
 }
 
+/// A hill of a kilometre, which is not symmetric.
+const char* const kHill =
+    "v -9000 -9000 0\nv 9000 -9000 0\nv 9000 9000 100\nv -9000 9000 0\nv 500 3000 1000\n"
+    "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+
+std::string HillFrom(double height_m, double heading_deg) {
+  return "[place]\nlatitude = 46.5\nlongitude = 8.0\n[camera]\nheight_m = " +
+         std::to_string(height_m) + "\nheading = " + std::to_string(heading_deg) +
+         "\n[terrain]\nmesh = \"hill.obj\"\n";
+}
+
+/// Returns the largest relative difference of the green channels.
+double LargestDifference(const HdrImage& a, const HdrImage& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+    const double one = double{a.rgb[i][1]}, other = double{b.rgb[i][1]};
+    largest = std::max(largest, std::abs(one - other) / std::max(one, other));
+  }
+  return largest;
+}
+
+// The picture of another view equals that of a scene that is loaded with this view. Rays differ in
+// the last digits of their coordinates, which moves an edge of the hill by much less than a pixel.
+TEST_F(ApiScene, ViewsAreThoseOfScenesLoadedWithThem) {
+  WriteText(folder_ / "hill.obj", kHill);
+  const UtcTime time = TimeFromText("2026-06-21T16:00:00Z");
+  const Scene scene = Scene::FromToml(HillFrom(1500.0, 90.0), folder_);
+  View view = scene.view();
+  EXPECT_EQ(view.camera.heading_deg, 90.0);
+  EXPECT_EQ(scene.Render(view, time, kSmall).rgb, scene.Render(time, kSmall).rgb);
+  view.camera.heading_deg = 10.0;
+  view.camera.height_m = 2000.0;
+  const HdrImage seen = scene.Render(view, time, kSmall);
+  const Scene other = Scene::FromToml(HillFrom(2000.0, 10.0), folder_);
+  EXPECT_LT(LargestDifference(seen, other.Render(time, kSmall)), 1e-3);
+  EXPECT_GT(LargestDifference(seen, scene.Render(time, kSmall)), 0.1) << "another picture";
+  EXPECT_NEAR(scene.HorizontalIlluminance(view, time) / other.HorizontalIlluminance(time), 1.0,
+              1e-6);
+  EXPECT_EQ(seen.metadata.at("alpenglow.heading_deg"), "10");
+  EXPECT_EQ(scene.Render(time, kSmall).metadata.at("alpenglow.heading_deg"), "90");
+}
+
+TEST_F(ApiScene, HeightsOfViewsCountFromTheGroundBelowThem) {
+  WriteText(folder_ / "hill.obj", kHill);
+  const UtcTime time = TimeFromText("2026-06-21T16:00:00Z");
+  const Scene scene = Scene::FromToml(HillFrom(1500.0, 90.0), folder_);
+  View view = scene.view();
+  view.place.latitude_deg += 3000.0 / 111.2e3;  // near the top
+  view.place.longitude_deg += 500.0 / 76.6e3;
+  view.camera = {.height_m = 50.0, .pitch_deg = -90.0, .fov_deg = 1.0};
+  const HdrImage down = scene.Render(view, time, kSmall);
+  EXPECT_NEAR(double{down.layers.at(0).values.at(72)}, 50.0, 0.1) << "the depth in the middle";
+  view.camera = {.height_m = 900.0, .height_is_above_ground = false};
+  EXPECT_THROW((void)scene.Render(view, time, kSmall), InputError) << "under the top";
+  EXPECT_THROW((void)scene.HorizontalIlluminance(view, time), InputError);
+  view = {.place = {0.0, 8.0}, .camera = {}};
+  EXPECT_THROW((void)scene.Render(view, time, kSmall), InputError) << "5000 km away";
+  view = scene.view();
+  view.camera.pitch_deg = 91.0;
+  EXPECT_THROW((void)scene.Render(view, time, kSmall), InputError);
+  view = scene.view();
+  view.place.latitude_deg = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)scene.Render(view, time, kSmall), InputError);
+}
+
+TEST_F(ApiScene, AViewOfAllDirectionsIsAPanorama) {
+  View view = Scene(Sea()).view();
+  view.camera.fov_deg = 360.0;
+  EXPECT_TRUE(Scene(Sea()).Render(view, TimeFromText("2026-06-21T16:00:00Z"), kSmall).is_panorama);
+}
+
+TEST_F(ApiScene, PicturesTellTheirProgressAndEndWhenTheyAreCancelled) {
+  const Scene sea(Sea());
+  const UtcTime time = TimeFromText("2026-06-21T16:00:00Z");
+  for (const std::optional<double> noise : {std::optional<double>(), std::optional(0.5)}) {
+    StillOptions options = kSmall;
+    options.noise = noise;
+    std::vector<double> fractions;
+    const auto note = [&](double fraction) {
+      fractions.push_back(fraction);
+      return true;
+    };
+    EXPECT_EQ(sea.Render(time, options, note).rgb, sea.Render(time, options).rgb);
+    ASSERT_FALSE(fractions.empty());
+    EXPECT_TRUE(std::ranges::is_sorted(fractions));
+    EXPECT_EQ(fractions.back(), 1.0);
+    int calls = 0;
+    const auto cancel = [&](double) { return ++calls > 5; };
+    EXPECT_THROW((void)sea.Render(time, options, cancel), Cancelled);
+    EXPECT_EQ(calls, 1) << "no call follows the one that cancels";
+  }
+}
+
+TEST_F(ApiScene, OnOneThreadEverythingRunsOnTheCallers) {
+  const Scene sea(Sea());
+  const UtcTime time = TimeFromText("2026-06-21T16:00:00Z");
+  std::set<std::thread::id> threads;
+  const auto note = [&](double) { return threads.insert(std::this_thread::get_id()), true; };
+  HdrImage still;
+  OnThreads(1, [&] { still = sea.Render(time, kSmall, note); });
+  EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
+  EXPECT_EQ(still.rgb, sea.Render(time, kSmall).rgb);
+  EXPECT_THROW(OnThreads(0, [] {}), InputError);
+  EXPECT_THROW(OnThreads(2, [] { throw OutputError("full"); }), OutputError);
+}
+
 TEST_F(ApiScene, WrongInputIsRefused) {
   SceneDescription sea = Sea();
   sea.camera.pitch_deg = 91.0;
@@ -63,6 +175,7 @@ TEST_F(ApiScene, WrongInputIsRefused) {
   sea.elevation_model = folder_ / "none.tif";
   EXPECT_THROW((void)Scene(sea), InputError);
   EXPECT_THROW((void)Scene::Read(folder_ / "none.toml"), InputError);
+  EXPECT_THROW((void)Scene::FromToml("[place]\nlatitude = 91\n", folder_), InputError);
 }
 
 TEST_F(ApiScene, ARenderedSceneNeedsItsFilesNoMore) {
