@@ -2,17 +2,24 @@
 #include <alpenglow/atmosphere.h>
 #include <fmt/format.h>
 
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "atmosphere/api/conversions.h"
+#include "atmosphere/api/local_rays.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
+#include "atmosphere/ray/single_scattering.h"
 
 namespace alpenglow {
 
@@ -23,9 +30,47 @@ struct Atmosphere::State {
     if (!atmosphere::FaultOfColours(medium.wavelengths_nm)) colour.emplace(medium.wavelengths_nm);
   }
 
+  /// Returns the air, which is prepared on first use.
+  [[nodiscard]] const atmosphere::SingleScattering<double>& air() const {
+    std::call_once(air_asked, [this] { prepared.emplace(medium); });
+    return *prepared;
+  }
+
+  [[nodiscard]] Spectrum TransmittanceAlong(const LocalPoint& eye, const Direction& direction,
+                                            double distance_m) const;
+
   Medium medium;
   std::optional<atmosphere::BandColour> colour;  // empty: the wavelengths show no colours
+  mutable std::once_flag air_asked;
+  mutable std::optional<atmosphere::SingleScattering<double>> prepared;
 };
+
+namespace {
+
+Spectrum Rounded(const SpectrumOf<double>& exact) {
+  Spectrum rounded(exact.size());
+  for (std::size_t band = 0; band < exact.size(); ++band)
+    rounded[band] = static_cast<float>(exact[band]);
+  return rounded;
+}
+
+}  // namespace
+
+Spectrum Atmosphere::State::TransmittanceAlong(const LocalPoint& eye, const Direction& direction,
+                                               double distance_m) const {
+  if (!(distance_m >= 0.0)) {
+    throw InputError(fmt::format("distance_m is {}; it must be at least 0", distance_m));
+  }
+  const AltitudeAndZenith place = AltitudeOf(eye, medium.planet_radius_m);
+  const glm::dvec3 along = UnitVectorOf(direction);
+  // Points are at most 1e12 m high: such a ray has left the air.
+  constexpr double kSpace_m = 1e13;
+  if (distance_m >= kSpace_m) {
+    const double mu = CosineBetween(along, place.up);
+    return Rounded(air().TransmittanceToSpace(std::max(place.altitude_m, 0.0), mu));
+  }
+  return Rounded(air().TransmittanceAlong(RayFrom(place, along, along, distance_m)));
+}
 
 Atmosphere::Atmosphere() {
   static const Atmosphere earth(atmosphere::MediumPreset("earth"));
@@ -91,6 +136,25 @@ LinearRgb Atmosphere::ColourOf(const Spectrum& light) const {
   }
   const auto [red, green, blue] = state_->colour->LinearSrgb({scaled.data(), sun.size()});
   return {red, green, blue};
+}
+
+Spectrum Atmosphere::Transmittance(const LocalPoint& eye, const Direction& direction,
+                                   double distance_m) const {
+  return state_->TransmittanceAlong(eye, direction, distance_m);
+}
+
+void Atmosphere::Transmittance(const OneOrMany<LocalPoint>& eyes,
+                               const OneOrMany<Direction>& directions,
+                               const OneOrMany<double>& distances_m,
+                               std::span<float> result) const {
+  const std::size_t bands = wavelengths_nm().size(), rays = RaysOf(result, bands);
+  RequireLength("eyes", eyes, rays);
+  RequireLength("directions", directions, rays);
+  RequireLength("distances_m", distances_m, rays);
+  oneapi::tbb::parallel_for(std::size_t{0}, rays, [&](std::size_t i) {
+    const Spectrum light = state_->TransmittanceAlong(eyes[i], directions[i], distances_m[i]);
+    std::ranges::copy(light.values(), result.begin() + static_cast<std::ptrdiff_t>(i * bands));
+  });
 }
 
 const Medium& Atmosphere::medium() const { return state_->medium; }

@@ -13,6 +13,10 @@ namespace alpenglow {
 /// that its day does not have.
 const UtcTime& RequireValid(const UtcTime& time);
 
+/// Ranges of members of SunInSky.
+inline constexpr double kNearestSun_au = 5e-3, kFarthestSun_au = 1e5;
+inline constexpr double kSmallestSun_deg = 1e-6, kLargestSun_deg = 90.0;
+
 /// Throws InputError that names the member out of range.
 void RequireValid(const SunInSky& sun);
 

@@ -55,8 +55,9 @@ void RequireFinite(double value, std::string_view name) {
 void RequireValid(const SunInSky& sun) {
   RequireInRange(sun.elevation_deg, -90.0, 90.0, "sun.elevation_deg");
   RequireInRange(sun.azimuth_deg, -360.0, 360.0, "sun.azimuth_deg");
-  RequireInRange(sun.distance_au, 5e-3, 1e5, "sun.distance_au");
-  RequireInRange(sun.angular_radius_deg, 1e-6, 90.0, "sun.angular_radius_deg");
+  RequireInRange(sun.distance_au, kNearestSun_au, kFarthestSun_au, "sun.distance_au");
+  RequireInRange(sun.angular_radius_deg, kSmallestSun_deg, kLargestSun_deg,
+                 "sun.angular_radius_deg");
   RequireInRange(sun.lower_for_air_deg, -90.0, 90.0, "sun.lower_for_air_deg");
 }
 
@@ -69,6 +70,12 @@ Direction SunInSky::ToSunForAir() const {
   RequireValid(*this);
   return Towards(atmosphere::SunForAir(*this).elevation_deg, azimuth_deg);
 }
+
+Sunlight::Sunlight(const SunInSky& sun)
+    : to_sun(sun.ToSun()),
+      to_sun_for_air(sun.ToSunForAir()),
+      distance_au(sun.distance_au),
+      angular_radius_deg(sun.angular_radius_deg) {}
 
 SunInSky SunAt(const Place& place, const UtcTime& time, const Atmosphere& atmosphere) {
   return atmosphere::ApparentSunAt(atmosphere::CheckedPlace(place), RequireValid(time),

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <alpenglow/atmosphere.h>
+#include <alpenglow/batch.h>
 #include <alpenglow/clouds.h>
 #include <alpenglow/errors.h>
 #include <alpenglow/export.h>

@@ -5,13 +5,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <alpenglow/batch.h>
 #include <alpenglow/export.h>
+#include <alpenglow/geometry.h>
 #include <alpenglow/spectrum.h>
 
 namespace alpenglow::atmosphere {
@@ -80,6 +83,22 @@ class Atmosphere {
   /// at most 480 nm to at least 600 nm, with gaps of at most 300 nm in between.
   /// @param light  per unit of solar irradiance, as returned by Sky.
   [[nodiscard]] LinearRgb ColourOf(const Spectrum& light) const;
+
+  /// Returns the transmittance [1] from a point along a straight ray to space, which is 0 if the
+  /// ground is in the way, or over a distance, as Sky::Between(). Error: 6e-6 of the optical depth,
+  /// or 1e-7 (asserted by transmittance_api_test). Throws InputError for a direction of length 0, a
+  /// distance below 0, and points as Sky does.
+  /// @param eye         the point.
+  /// @param direction   of the ray.
+  /// @param distance_m  of the end; infinite for space.
+  [[nodiscard]] Spectrum Transmittance(
+      const LocalPoint& eye, const Direction& direction,
+      double distance_m = std::numeric_limits<double>::infinity()) const;
+
+  /// Computes Transmittance() of many rays, see batch.h. Throws InputError for a number of values that
+  /// is neither 1 nor that of the rays.
+  void Transmittance(const OneOrMany<LocalPoint>& eyes, const OneOrMany<Direction>& directions,
+                     const OneOrMany<double>& distances_m, std::span<float> result) const;
 
   /// Makes an atmosphere from the parameters in the form of the sources of the library, which alone
   /// know it. Throws InputError for a parameter out of range.

@@ -5,13 +5,14 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include <alpenglow/atmosphere.h>
+#include <alpenglow/batch.h>
 #include <alpenglow/export.h>
 #include <alpenglow/geometry.h>
 #include <alpenglow/progress.h>
 #include <alpenglow/spectrum.h>
+#include <alpenglow/sun_and_moon.h>
 
 namespace ALPENGLOW_EXPORT alpenglow {
 
@@ -22,16 +23,26 @@ struct AirBetween {
   Spectrum inscattered;    ///< light of all orders, per unit of solar irradiance [1/sr]
 };
 
+/// Stokes parameters of linear polarisation, per unit of solar irradiance [1/sr]. The degree of
+/// polarisation is sqrt(Q^2 + U^2) over the radiance.
+struct Polarisation {
+  Spectrum q;  ///< positive for light that vibrates in the vertical plane of the view
+  Spectrum u;  ///< positive for light that vibrates from the eye's lower left to its upper right
+};
+
 /// The light in an atmosphere under the sun, including all orders of scattering. Light is relative
-/// to the irradiance of the sun above the air; Atmosphere::ColourOf converts it to colours, and
-/// Atmosphere::solar_irradiance_w_per_m2_nm to W m^-2 sr^-1 nm^-1.
+/// to the irradiance that the sun has above the air at its mean distance: a sun that is nearer gives
+/// more. Atmosphere::ColourOf converts it to colours, and Atmosphere::solar_irradiance_w_per_m2_nm to
+/// W m^-2 sr^-1 nm^-1.
 ///
 /// Immutable; copies share their memory. All functions may be called from several threads. Rays are
-/// straight: directions to the sun should be those of SunInSky::ToSunForAir.
+/// straight.
 ///
-/// Functions throw InputError for a direction of length 0, for coordinates that are not finite, and
-/// for points lower than half a radius of the planet below altitude 0 or higher than 1e12 m. The
-/// sky of a point below altitude 0 is that of altitude 0.
+/// Each quantity has a function for one ray and one for a batch of rays, see batch.h. Functions throw
+/// InputError for a direction of length 0, for coordinates that are not finite, for a sun out of
+/// range, for points lower than half a radius of the planet below altitude 0 or higher than 1e12 m,
+/// and for an argument of a batch whose number of values is neither 1 nor that of the rays. The sky
+/// of a point below altitude 0 is that of altitude 0.
 class Sky {
  public:
   /// Solves multiple scattering, on all processors. This is slow compared with all other functions:
@@ -51,7 +62,27 @@ class Sky {
   /// Error: 0.25 % (rms) by day and 1 % in civil twilight in clear air, against a path tracer
   /// (asserted by multiple_scattering_test).
   [[nodiscard]] Spectrum Radiance(const LocalPoint& eye, const Direction& view,
-                                  const Direction& to_sun) const;
+                                  const Sunlight& sun) const;
+  /// Computes Radiance() of many rays.
+  void Radiance(const OneOrMany<LocalPoint>& eyes, const OneOrMany<Direction>& views,
+                const OneOrMany<Sunlight>& suns, std::span<float> result) const;
+
+  /// Returns the polarisation of Radiance(). It is 0 in air whose light is not polarised. A vertical
+  /// view counts as tilted towards the sun.
+  [[nodiscard]] Polarisation PolarisationOf(const LocalPoint& eye, const Direction& view,
+                                            const Sunlight& sun) const;
+  /// Computes PolarisationOf() many rays.
+  void PolarisationOf(const OneOrMany<LocalPoint>& eyes, const OneOrMany<Direction>& views,
+                      const OneOrMany<Sunlight>& suns, std::span<float> q,
+                      std::span<float> u) const;
+
+  /// Returns the radiance of the disk of the sun in a direction, seen through the air, per unit of
+  /// solar irradiance [1/sr]; 0 beside it and behind the ground. The limb is darker than the centre.
+  [[nodiscard]] Spectrum DiskRadiance(const LocalPoint& eye, const Direction& view,
+                                      const Sunlight& sun) const;
+  /// Computes DiskRadiance() of many rays.
+  void DiskRadiance(const OneOrMany<LocalPoint>& eyes, const OneOrMany<Direction>& views,
+                    const OneOrMany<Sunlight>& suns, std::span<float> result) const;
 
   /// Returns the aerial perspective: the effect of the air between the eye and an opaque object.
   /// Both may lie below altitude 0, and the line between them may dip below it: air continues there
@@ -63,29 +94,35 @@ class Sky {
   /// relative error below 0.1 % (both asserted by sky_api_test between points up to 100 km apart);
   /// light of higher orders has that of Radiance().
   [[nodiscard]] AirBetween Between(const LocalPoint& eye, const LocalPoint& object,
-                                   const Direction& to_sun) const;
+                                   const Sunlight& sun) const;
+  /// Computes Between() of many lines.
+  void Between(const OneOrMany<LocalPoint>& eyes, const OneOrMany<LocalPoint>& objects,
+               const OneOrMany<Sunlight>& suns, std::span<float> transmittance,
+               std::span<float> inscattered) const;
 
-  /// Returns Radiance() for many directions, computed on all processors.
-  [[nodiscard]] std::vector<Spectrum> Radiance(const LocalPoint& eye,
-                                               std::span<const Direction> views,
-                                               const Direction& to_sun) const;
-  /// Returns Between() for many objects, computed on all processors.
-  [[nodiscard]] std::vector<AirBetween> Between(const LocalPoint& eye,
-                                                std::span<const LocalPoint> objects,
-                                                const Direction& to_sun) const;
+  /// Returns the irradiance of the sun on the horizontal plane at a point, per unit of its irradiance
+  /// above the air [1], of the part of the disk above the horizon of altitude 0.
+  [[nodiscard]] Spectrum SunIrradiance(const LocalPoint& point, const Sunlight& sun) const;
+  /// Returns the irradiance of the sun on a plane with a normal, such as `sun.to_sun` for the one that
+  /// faces it.
+  [[nodiscard]] Spectrum SunIrradiance(const LocalPoint& point, const Sunlight& sun,
+                                       const Direction& normal) const;
+  /// Computes SunIrradiance() of many planes.
+  void SunIrradiance(const OneOrMany<LocalPoint>& points, const OneOrMany<Sunlight>& suns,
+                     const OneOrMany<Direction>& normals, std::span<float> result) const;
 
-  /// Computes Between() for many objects into memory of the caller. Throws InputError unless both
-  /// spans have the same length.
-  void Between(const LocalPoint& eye, std::span<const LocalPoint> objects, const Direction& to_sun,
-               std::span<AirBetween> result) const;
-
-  /// Returns the irradiance of the sun on a horizontal plane, per unit of its irradiance above the
-  /// air [1]; 0 if the sun is below the horizontal plane.
-  [[nodiscard]] Spectrum SunIrradiance(const LocalPoint& point, const Direction& to_sun) const;
-  /// Returns the irradiance of the sky on a horizontal plane, per unit of solar irradiance [1].
-  /// Error: within 2 % of a path tracer in the air of the earth (asserted by
+  /// Returns the irradiance of the sky on the horizontal plane at a point, per unit of solar
+  /// irradiance [1]. Error: within 2 % of a path tracer in the air of the earth (asserted by
   /// multiple_scattering_test).
-  [[nodiscard]] Spectrum SkyIrradiance(const LocalPoint& point, const Direction& to_sun) const;
+  [[nodiscard]] Spectrum SkyIrradiance(const LocalPoint& point, const Sunlight& sun) const;
+  /// Returns the irradiance of the sky, and of the ground of the atmosphere, on a plane with a normal.
+  /// Error: within 4 % of the irradiance of the horizontal plane in the air of the earth (asserted by
+  /// sky_light_api_test).
+  [[nodiscard]] Spectrum SkyIrradiance(const LocalPoint& point, const Sunlight& sun,
+                                       const Direction& normal) const;
+  /// Computes SkyIrradiance() of many planes.
+  void SkyIrradiance(const OneOrMany<LocalPoint>& points, const OneOrMany<Sunlight>& suns,
+                     const OneOrMany<Direction>& normals, std::span<float> result) const;
 
  private:
   friend struct SkyParts;  // of the sources of the library

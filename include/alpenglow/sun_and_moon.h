@@ -44,6 +44,21 @@ struct SunInSky {
   static constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 };
 
+/// The sun as the light of a Sky. It is made from a SunInSky, or from a direction, in which a sun
+/// at its mean distance stands. Functions throw InputError that names a member out of its range.
+struct Sunlight {
+  Direction to_sun;          ///< in which it is seen: for its disk and for light on surfaces
+  Direction to_sun_for_air;  ///< of the sun that lights the air, see SunInSky::lower_for_air_deg
+  double distance_au = 1.0;  ///< in [0.005, 100000]; light falls with its square
+  double angular_radius_deg = 0.2666;  ///< of the disk, in [0.000001, 90]
+
+  /// Makes the light of a sun at its mean distance.
+  Sunlight(const Direction& direction)  // NOLINT: as directions are written
+      : to_sun(direction), to_sun_for_air(direction) {}
+  /// Makes the light of a sun. Throws InputError for a member out of range.
+  Sunlight(const SunInSky& sun);  // NOLINT: as above
+};
+
 /// The moon as seen from a place.
 struct MoonInSky {
   double elevation_deg = 0.0;         ///< of the centre, with refraction

@@ -224,7 +224,7 @@ TEST(Arguments, WavelengthsWithoutColoursAreRefusedForPictures) {
               HasSubstr("for colours"));
   EXPECT_THAT(tests::FaultOf([&] { return HorizontalIlluminance(ultraviolet, 2.0, {}); }),
               HasSubstr("for colours"));
-  EXPECT_GT(ultraviolet.Radiance({.up_m = 2.0}, {.up = 1.0}, {.up = 1.0})[0], 0.0F)
+  EXPECT_GT(ultraviolet.Radiance({.up_m = 2.0}, {}, Direction{.up = 1.0})[0], 0.0F)
       << "light of any wavelength is still computed";
   for (const std::vector<double>& set :
        {std::vector<double>{440.0, 550.0, 680.0}, {450.0, 500.0, 590.0, 650.0}, {440.0, 680.0}}) {
