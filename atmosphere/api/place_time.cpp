@@ -51,6 +51,8 @@ const UtcTime& RequireValid(const UtcTime& time) {
         fmt::format("time lies {} days after 1970-01-01; its year must lie in [{}, {}]",
                     DaysSince1970(time).count(), atmosphere::kFirstYear, atmosphere::kLastYear));
   }
+  // The length of a day takes longer to find, and few instants lie in a leap second.
+  if (time.second_of_day >= 0.0 && time.second_of_day < 86400.0) return time;
   const double length_s = atmosphere::DayLength(time.modified_julian_day);
   if (!(time.second_of_day >= 0.0 && time.second_of_day < length_s)) {
     throw InputError(

@@ -4,9 +4,11 @@
 #include <alpenglow/errors.h>
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "atmosphere/api/conversions.h"
 #include "atmosphere/astronomy/moon.h"
@@ -32,11 +34,23 @@ Direction Towards(double elevation_deg, double azimuth_deg) {
   return {unit.x, unit.y, unit.z};
 }
 
-/// Returns the air of the atmosphere on the sphere that osculates the ellipsoid at the place.
+/// Returns the air of the atmosphere on the sphere that osculates the ellipsoid at the place. The last
+/// one is kept: it takes as long as a position of the sun.
 atmosphere::BendingAir AirAt(const Atmosphere& atmosphere, const Place& place) {
+  struct Kept {
+    Atmosphere of;
+    double latitude_rad;
+    atmosphere::BendingAir air;
+  };
+  thread_local std::optional<Kept> kept;
+  const double latitude_rad = atmosphere::CheckedPlace(place).latitude_rad();
   const atmosphere::Medium& medium = atmosphere.medium();
-  return atmosphere::GentleAirOf(
-      medium, atmosphere::OsculatingRadius(medium, atmosphere::CheckedPlace(place).latitude_rad()));
+  if (!kept || &kept->of.medium() != &medium || kept->latitude_rad != latitude_rad) {
+    kept.emplace(
+        Kept{atmosphere, latitude_rad,
+             atmosphere::GentleAirOf(medium, atmosphere::OsculatingRadius(medium, latitude_rad))});
+  }
+  return kept->air;
 }
 
 }  // namespace
@@ -82,20 +96,48 @@ SunInSky SunAt(const Place& place, const UtcTime& time, const Atmosphere& atmosp
                                    AirAt(atmosphere, place));
 }
 
+std::vector<SunInSky> SunsAt(const Place& place, std::span<const UtcTime> times,
+                             const Atmosphere& atmosphere) {
+  const Place eye = atmosphere::CheckedPlace(place);
+  const atmosphere::BendingAir air = AirAt(atmosphere, place);
+  std::vector<SunInSky> suns(times.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, times.size(), [&](std::size_t i) {
+    suns[i] = atmosphere::ApparentSunAt(eye, RequireValid(times[i]), air);
+  });
+  return suns;
+}
+
 MoonInSky MoonAt(const Place& place, const UtcTime& time, const Atmosphere& atmosphere) {
   return atmosphere::ApparentMoonAt(atmosphere::CheckedPlace(place), RequireValid(time),
                                     AirAt(atmosphere, place));
 }
 
+namespace {
+
+atmosphere::SunEvent EventNamed(std::string_view event) {
+  if (const auto known = atmosphere::SunEventFromName(event)) return *known;
+  throw InputError("\"" + std::string(event) +
+                   "\" is no event of the sun; use noon, sunrise, sunset, or civil-, nautical- "
+                   "or astronomical-dawn or -dusk");
+}
+
+}  // namespace
+
 std::optional<UtcTime> SunEventTime(std::string_view event, const Place& place,
                                     const UtcTime& around) {
-  const std::optional<atmosphere::SunEvent> known = atmosphere::SunEventFromName(event);
-  if (!known) {
-    throw InputError("\"" + std::string(event) +
-                     "\" is no event of the sun; use noon, sunrise, sunset, or civil-, nautical- "
-                     "or astronomical-dawn or -dusk");
-  }
-  return atmosphere::FindSunEvent(*known, atmosphere::CheckedPlace(place), RequireValid(around));
+  return atmosphere::FindSunEvent(EventNamed(event), atmosphere::CheckedPlace(place),
+                                  RequireValid(around));
+}
+
+std::vector<std::optional<UtcTime>> SunEventTimes(std::string_view event, const Place& place,
+                                                  std::span<const UtcTime> around) {
+  const atmosphere::SunEvent known = EventNamed(event);
+  const Place eye = atmosphere::CheckedPlace(place);
+  std::vector<std::optional<UtcTime>> times(around.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, around.size(), [&](std::size_t i) {
+    times[i] = atmosphere::FindSunEvent(known, eye, RequireValid(around[i]));
+  });
+  return times;
 }
 
 }  // namespace alpenglow

@@ -250,13 +250,18 @@ TerrestrialTime TerrestrialTimeAt(const UtcTime& instant, double delta_t_s) {
           (instant.second_of_day + delta_t_s) / kSecondsPerDay};
 }
 
-glm::dmat3 EcefFromGcrs(const UtcTime& instant, double delta_t_s) {
+TurnedEarth TurnedEarthAt(const UtcTime& instant, double delta_t_s) {
   const EarthAndAxes earth = EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s));
   const double angle_rad = eraEra00(kModifiedJulianEpoch + instant.modified_julian_day,
                                     instant.second_of_day / kSecondsPerDay) -
                            earth.equation_of_the_origins_rad;
   const double sine = std::sin(angle_rad), cosine = std::cos(angle_rad);
-  return glm::dmat3(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0) * earth.true_from_gcrs;
+  return {earth.bodies,
+          glm::dmat3(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0) * earth.true_from_gcrs};
+}
+
+glm::dmat3 EcefFromGcrs(const UtcTime& instant, double delta_t_s) {
+  return TurnedEarthAt(instant, delta_t_s).ecef_from_gcrs;
 }
 
 // TDB - TT, below 2 ms, moves the sun by 1e-4 arcseconds.
@@ -268,7 +273,7 @@ ApparentPlace SeenFrom(const Place& place, const glm::dmat3& ecef_from_gcrs,
                        const EarthAndSun& bodies, const BodyState& body) {
   const LocalFrame frame(kWgs84, place);
   const BodyState observer =
-      ObserverOf(bodies.earth, EcefFromGeodetic(kWgs84, place), glm::transpose(ecef_from_gcrs));
+      ObserverOf(bodies.earth, frame.EcefFromEnu(Point<Enu>{}), glm::transpose(ecef_from_gcrs));
   const glm::dvec3 path_au = LightPath_au(body, observer);
   const double sun_au = glm::length(bodies.sun.position_au - observer.position_au);
   const Vector<Ecef> direction{
@@ -290,8 +295,7 @@ BodyState MoonFromEarth(const TerrestrialTime& time) {
 
 std::array<PointLight, 5> PlanetsAt(const Place& place, const UtcTime& instant) {
   const double delta_t_s = DeltaT(instant);
-  const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
-  const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, delta_t_s);
+  const auto [bodies, ecef_from_gcrs] = TurnedEarthAt(instant, delta_t_s);
   const TerrestrialTime time = TerrestrialTimeAt(instant, delta_t_s);
   std::array<PointLight, 5> lights{};
   for (std::size_t i = 0; i < lights.size(); ++i) {

@@ -53,6 +53,14 @@ struct EarthAndSun {
 /// within decimetres.
 [[nodiscard]] glm::dmat3 EcefFromGcrs(const UtcTime& instant, double delta_t_s);
 
+/// Earth and sun at an instant, with EcefFromGcrs.
+struct TurnedEarth {
+  EarthAndSun bodies;
+  glm::dmat3 ecef_from_gcrs;
+};
+/// Returns both from one evaluation of the series.
+[[nodiscard]] TurnedEarth TurnedEarthAt(const UtcTime& instant, double delta_t_s);
+
 /// Apparent place of a body seen from a place, without refraction.
 struct ApparentPlace {
   double elevation_rad;  // above the horizontal plane of the ellipsoid

@@ -25,8 +25,8 @@ SunInSky TrueSunAt(const Place& place, const UtcTime& instant) {
 }
 
 SunInSky TrueSunAt(const Place& place, const UtcTime& instant, double delta_t_s) {
-  const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
-  const ApparentPlace sun = SeenFrom(place, EcefFromGcrs(instant, delta_t_s), bodies, bodies.sun);
+  const auto [bodies, ecef_from_gcrs] = TurnedEarthAt(instant, delta_t_s);
+  const ApparentPlace sun = SeenFrom(place, ecef_from_gcrs, bodies, bodies.sun);
   const double radius_rad = std::asin(kSunRadius_m / (sun.distance_au * kAstronomicalUnit_m));
   return {sun.elevation_rad / kRadiansPerDegree, sun.azimuth_rad / kRadiansPerDegree,
           sun.distance_au, radius_rad / kRadiansPerDegree};

@@ -56,9 +56,11 @@ RisingRays::BendingAndSlope RisingRays::At(double elevation_rad) const {
   for (std::size_t i = 0; i < kNodes; ++i) {
     const double over_m = over_here_m_[i] + less_m;  // q - b
     const double squares_m2 = std::max(over_m * (twice_m + over_here_m_[i]), kLeast_m2);
-    const double term = strength_[i] / std::sqrt(squares_m2);
+    const double inverse_per_m = 1.0 / std::sqrt(squares_m2);
+    const double ratio = invariant_m * inverse_per_m;
+    const double term = strength_[i] * inverse_per_m;
     sum += term;
-    slope_sum += term * (invariant_m * invariant_m / squares_m2);
+    slope_sum += term * ratio * ratio;
   }
   return {invariant_m * sum, -here_m_ * std::sin(elevation_rad) * (sum + slope_sum)};
 }
@@ -101,17 +103,24 @@ double ObserverRefraction::SeenAt(double apparent_elevation_rad) const {
 }
 
 // Uses Newton's method. Bending decreases with the elevation ever more slowly, therefore the steps
-// from an elevation that is too low never go beyond the root.
+// from an elevation that is too low never go beyond the root, and the curvature of the last step is
+// an upper bound of that ahead.
 double ObserverRefraction::RisingElevationOf(double true_elevation_rad) const {
-  // The step after one of this length is shorter than 1e-12.
-  constexpr double kLastStep_rad = 1e-8;
+  constexpr double kLeastStep_rad =
+      1e-8;  // the step after one of this length is shorter than 1e-12
+  constexpr double kError_rad = 1e-11;
   double elevation_rad = std::max(true_elevation_rad, 0.0);
+  double last_step_rad = 0.0, last_per_rad = 0.0;
   for (int step = 0; step < 20; ++step) {
     const auto [bending_rad, per_rad] = rising_.At(elevation_rad);
     const double step_rad =
         (true_elevation_rad + bending_rad - elevation_rad) / (1.0 - std::min(per_rad, 0.0));
     elevation_rad += step_rad;
-    if (std::abs(step_rad) < kLastStep_rad) break;
+    if (std::abs(step_rad) < kLeastStep_rad) break;
+    const double error_rad = 0.5 * std::abs(per_rad - last_per_rad) * step_rad * step_rad;
+    if (step > 0 && error_rad < kError_rad * std::abs(last_step_rad)) break;
+    last_step_rad = step_rad;
+    last_per_rad = per_rad;
   }
   return elevation_rad;
 }
