@@ -85,6 +85,27 @@ Direction SunInSky::ToSunForAir() const {
   return Towards(atmosphere::SunForAir(*this).elevation_deg, azimuth_deg);
 }
 
+Direction MoonInSky::ToMoon() const { return DirectionFromAngles(elevation_deg, azimuth_deg); }
+
+Direction MoonInSky::ToMoonForAir() const {
+  return DirectionFromAngles(std::clamp(elevation_deg - lower_for_air_deg, -90.0, 90.0),
+                             azimuth_deg);
+}
+
+Spectrum MoonIrradiance(const MoonInSky& moon, const Atmosphere& atmosphere) {
+  RequireInRange(moon.angular_radius_deg, 0.0, kLargestSun_deg, "moon.angular_radius_deg");
+  RequireInRange(moon.phase_angle_deg, 0.0, 180.0, "moon.phase_angle_deg");
+  RequireInRange(moon.sun_distance_au, kNearestSun_au, kFarthestSun_au, "moon.sun_distance_au");
+  const atmosphere::MoonPosition position{moon, {}};
+  const std::span<const double> wavelengths_nm = atmosphere.wavelengths_nm();
+  Spectrum irradiance(wavelengths_nm.size());
+  for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
+    irradiance[band] =
+        static_cast<float>(atmosphere::MoonIrradiance(position, 1.0, wavelengths_nm[band]));
+  }
+  return irradiance;
+}
+
 Sunlight::Sunlight(const SunInSky& sun)
     : to_sun(sun.ToSun()),
       to_sun_for_air(sun.ToSunForAir()),

@@ -13,6 +13,7 @@
 #include <alpenglow/export.h>
 #include <alpenglow/geometry.h>
 #include <alpenglow/place_time.h>
+#include <alpenglow/spectrum.h>
 
 namespace ALPENGLOW_EXPORT alpenglow {
 
@@ -72,6 +73,11 @@ struct MoonInSky {
   double sun_distance_au = 1.0;       ///< of the moon from the sun
   double lower_for_air_deg = 0.0;     ///< as of SunInSky
 
+  /// Returns the direction in which the moon is visible.
+  [[nodiscard]] Direction ToMoon() const;
+  /// Returns the direction of the moon that lights the air: for Sky.
+  [[nodiscard]] Direction ToMoonForAir() const;
+
   /// Returns the elevation [rad].
   [[nodiscard]] constexpr double elevation_rad() const { return elevation_deg * kRadiansPerDegree; }
   /// Returns the azimuth [rad].
@@ -105,6 +111,11 @@ struct MoonInSky {
 /// for a place out of range and a year outside [1900, 2100].
 [[nodiscard]] MoonInSky MoonAt(const Place& place, const UtcTime& time,
                                const Atmosphere& atmosphere = {});
+
+/// Returns the irradiance of the moon above the air, over that of the sun at its mean distance [1]. The
+/// light of a Sky under the moon is its light for the direction MoonInSky::ToMoonForAir(), times this,
+/// band by band.
+[[nodiscard]] Spectrum MoonIrradiance(const MoonInSky& moon, const Atmosphere& atmosphere = {});
 
 /// Returns the time of an event on the local solar day that contains `around`, or std::nullopt if
 /// it does not happen on that day, as in polar night. Error of the search: below 0.1 s (asserted by

@@ -189,31 +189,24 @@ Spectrum SkyLight::SkyIrradiance(const LocalPoint& point, const Sunlight& sun,
                                      std::max(place.altitude_m, 0.0), mu_s, mu, azimuth));
 }
 
+/// Writes the light of a ray into its place in the results of a batch.
+void Put(const Spectrum& light, std::size_t ray, std::span<float> results) {
+  std::ranges::copy(light.values(), results.subspan(ray * light.size()).begin());
+}
+
 /// Writes the light of each ray of a batch into its place.
 /// @param light_of  returns the spectrum of a ray.
 template <typename LightOf>
-void Fill(std::size_t rays, std::span<float> result, const LightOf& light_of) {
-  oneapi::tbb::parallel_for(std::size_t{0}, rays, [&](std::size_t ray) {
-    const Spectrum light = light_of(ray);
-    std::ranges::copy(light.values(), result.subspan(ray * light.size()).begin());
-  });
+void Fill(std::size_t rays, std::span<float> results, const LightOf& light_of) {
+  oneapi::tbb::parallel_for(std::size_t{0}, rays,
+                            [&](std::size_t ray) { Put(light_of(ray), ray, results); });
 }
 
-/// Writes two spectra of each ray.
-template <typename LightOf>
-void Fill(std::size_t rays, std::span<float> first, std::span<float> second,
-          const LightOf& light_of) {
-  if (first.size() != second.size()) {
-    throw InputError(
-        fmt::format("the results have {} and {} values; they must have as many as "
-                    "each other",
-                    first.size(), second.size()));
-  }
-  Fill(rays, first, [&](std::size_t ray) {
-    const auto [one, other] = light_of(ray);
-    std::ranges::copy(other.values(), second.subspan(ray * other.size()).begin());
-    return one;
-  });
+void RequireSameLength(std::span<const float> first, std::span<const float> second) {
+  if (first.size() == second.size()) return;
+  throw InputError(
+      fmt::format("the results have {} and {} values; they must have as many as each other",
+                  first.size(), second.size()));
 }
 
 }  // namespace
@@ -272,7 +265,12 @@ void Sky::PolarisationOf(const OneOrMany<LocalPoint>& eyes, const OneOrMany<Dire
   RequireLength("views", views, rays);
   RequireLength("suns", suns, rays);
   const SkyLight sky(state_->lookup);
-  Fill(rays, q, u, [&](std::size_t i) { return sky.PolarisationOf(eyes[i], views[i], suns[i]); });
+  RequireSameLength(q, u);
+  oneapi::tbb::parallel_for(std::size_t{0}, rays, [&](std::size_t i) {
+    const Polarisation light = sky.PolarisationOf(eyes[i], views[i], suns[i]);
+    Put(light.q, i, q);
+    Put(light.u, i, u);
+  });
 }
 
 AirBetween Sky::Between(const LocalPoint& eye, const LocalPoint& object,
@@ -288,8 +286,12 @@ void Sky::Between(const OneOrMany<LocalPoint>& eyes, const OneOrMany<LocalPoint>
   RequireLength("objects", objects, rays);
   RequireLength("suns", suns, rays);
   const SkyLight sky(state_->lookup);
-  Fill(rays, transmittance, inscattered,
-       [&](std::size_t i) { return sky.Between(eyes[i], objects[i], suns[i]); });
+  RequireSameLength(transmittance, inscattered);
+  oneapi::tbb::parallel_for(std::size_t{0}, rays, [&](std::size_t i) {
+    const AirBetween air = sky.Between(eyes[i], objects[i], suns[i]);
+    Put(air.transmittance, i, transmittance);
+    Put(air.inscattered, i, inscattered);
+  });
 }
 
 Spectrum Sky::SunIrradiance(const LocalPoint& point, const Sunlight& sun) const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <alpenglow/errors.h>
 #include <alpenglow/scene.h>
+#include <alpenglow/sky.h>
+#include <alpenglow/sun_and_moon.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 #include <vector>
 
 #include "renderer/picture/render.h"
+#include "tests/fixtures/comma_locale.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -164,6 +167,45 @@ TEST_F(ApiScene, OnOneThreadEverythingRunsOnTheCallers) {
   EXPECT_EQ(still.rgb, sea.Render(time, kSmall).rgb);
   EXPECT_THROW(OnThreads(0, [] {}), InputError);
   EXPECT_THROW(OnThreads(2, [] { throw OutputError("full"); }), OutputError);
+}
+
+// A full moon high in the sky gives a fifth of a lux. The illuminance of the scene has the airglow
+// and the stars too, less than a hundredth of it.
+TEST_F(ApiScene, MoonlightIsThatOfTheLibraryOfTheSky) {
+  const Scene sea(Sea());
+  const UtcTime midnight = TimeFromText("2026-12-24T00:00:00Z");
+  const Place eye{46.5, 8.0, 300.0};
+  const Atmosphere air = Atmosphere().AtLatitude(eye.latitude_deg);
+  const MoonInSky moon = MoonAt(eye, midnight, air);
+  EXPECT_GT(moon.elevation_deg, 60.0);
+  const Sky sky(air);
+  Sunlight light = moon.ToMoon();
+  light.to_sun_for_air = moon.ToMoonForAir();
+  const LocalPoint point{.up_m = eye.height_m};
+  const Spectrum lit = MoonIrradiance(moon, air) *
+                       (sky.SunIrradiance(point, light) + sky.SkyIrradiance(point, light));
+  const double moonlight_lx = Luminance(air.ColourOf(lit));
+  EXPECT_GT(moonlight_lx, 0.15);
+  EXPECT_LT(moonlight_lx, 0.35);
+  EXPECT_NEAR(moonlight_lx / sea.HorizontalIlluminance(midnight), 1.0, 0.01);
+  MoonInSky none = moon;
+  none.phase_angle_deg = 181.0;
+  EXPECT_THROW((void)MoonIrradiance(none, air), InputError);
+}
+
+TEST_F(ApiScene, TextsAndNumbersDoNotFollowTheLocale) {
+  WriteText(folder_ / "hill.obj", kHill);
+  const std::string air = Atmosphere().ToToml();
+  const std::string text = HillFrom(1500.25, 10.5);
+  const UtcTime time = TimeFromText("2026-06-21T16:00:00.5Z");
+  const HdrImage plain = Scene::FromToml(text, folder_).Render(time, kSmall);
+  const tests::CommaLocale locale(folder_);
+  EXPECT_EQ(Atmosphere::FromToml(air).ToToml(), air);
+  EXPECT_EQ(TimeFromText("2026-06-21T16:00:00.5Z"), time);
+  const Scene scene = Scene::FromToml(text, folder_);
+  EXPECT_EQ(scene.view().camera.height_m, 1500.25);
+  EXPECT_EQ(scene.Render(time, kSmall).rgb, plain.rgb);
+  EXPECT_EQ(scene.Render(time, kSmall).metadata, plain.metadata);
 }
 
 TEST_F(ApiScene, WrongInputIsRefused) {
