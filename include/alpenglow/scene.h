@@ -72,7 +72,7 @@ struct StillOptions {
   int samples_per_pixel = 4;  ///< rays of a pixel, in [1, 1024]; with noise its first rays
   /// Further layers: "depth", "normal", "albedo", "inscatter", "transmittance", "sun_visibility"
   /// and others, see --aov in renderer/MANUAL.md.
-  std::vector<std::string> layers;
+  std::vector<std::string> layers = {};
 };
 
 /// A scene whose terrain is loaded and whose air is solved; it renders stills of any time from any
