@@ -97,7 +97,9 @@ void WritePlot(const TimesOptions& options, const Scene& scene, const EventDay& 
     moments.push_back({instant, TrueSunAt(first.place, instant).elevation_deg,
                        TrueMoonAt(first.place, instant).elevation_deg, lux, IncidentEv100(lux)});
   }
-  WriteTextAtomically(*options.plot, SvgOfDay(moments, first.zone, PublishedLightLevels()));
+  WriteTextAtomically(
+      *options.plot, SvgOfDay(moments, {options.place.value_or(PlaceText(first.place)), first.zone},
+                              PublishedLightLevels()));
 }
 
 void PrepareOutputsOf(const TimesOptions& options, const Scene& scene) {

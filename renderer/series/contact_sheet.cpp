@@ -5,103 +5,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <string_view>
 
 #include "atmosphere/base/error.h"
+#include "renderer/series/lettered_sheet.h"
 
 namespace alpenglow::renderer {
 namespace {
 
 constexpr int kGap = 8;
-constexpr int kGlyphWidth = 3;
-constexpr int kGlyphHeight = 5;
-constexpr int kGlyphScale = 3;
-constexpr int kLabelHeight = kGlyphHeight * kGlyphScale + 6;
-constexpr std::uint8_t kPaper = 24;
-constexpr std::uint8_t kInk = 200;
-
-/// Returns five rows of three pixels, top row first, '#' for ink; empty for unsupported characters.
-std::string_view Glyph(char c) {
-  switch (c) {
-    case '0':
-      return "####.##.##.####";
-    case '1':
-      return ".#.##..#..#.###";
-    case '2':
-      return "###..#####..###";
-    case '3':
-      return "###..####..####";
-    case '4':
-      return "#.##.####..#..#";
-    case '5':
-      return "####..###..####";
-    case '6':
-      return "####..####.####";
-    case '7':
-      return "###..#.#..#..#.";
-    case '8':
-      return "####.#####.####";
-    case '9':
-      return "####.####..####";
-    case ':':
-      return "....#.....#....";
-    case '.':
-      return ".............#.";
-    case '+':
-      return "....#.###.#....";
-    case '-':
-      return "......###......";
-    default:
-      return "...............";
-  }
-}
-
-class Sheet {
- public:
-  Sheet(int width, int height)
-      : image_{
-            width, height,
-            std::vector<std::uint8_t>(
-                3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kPaper)} {}
-
-  void Paste(const DisplayImage& picture, int left, int top) {
-    const std::size_t row_bytes = 3 * static_cast<std::size_t>(picture.width);
-    for (int y = 0; y < picture.height; ++y) {
-      const auto from = picture.rgb.begin() +
-                        static_cast<std::ptrdiff_t>(row_bytes * static_cast<std::size_t>(y));
-      std::copy_n(from, row_bytes,
-                  image_.rgb.begin() + static_cast<std::ptrdiff_t>(Index(left, top + y)));
-    }
-  }
-
-  void Print(std::string_view text, int left, int top) {
-    for (const char c : text) {
-      Draw(Glyph(c), left, top);
-      left += (kGlyphWidth + 1) * kGlyphScale;
-    }
-  }
-
-  [[nodiscard]] const DisplayImage& image() const { return image_; }
-
- private:
-  [[nodiscard]] std::size_t Index(int x, int y) const {
-    return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
-                static_cast<std::size_t>(x));
-  }
-  void Draw(std::string_view glyph, int left, int top) {
-    for (int y = 0; y < kGlyphHeight * kGlyphScale; ++y) {
-      for (int x = 0; x < kGlyphWidth * kGlyphScale; ++x) {
-        const int cell = y / kGlyphScale * kGlyphWidth + x / kGlyphScale;
-        const bool inside = left + x < image_.width && top + y < image_.height;
-        if (!inside || glyph[static_cast<std::size_t>(cell)] != '#') continue;
-        std::fill_n(image_.rgb.begin() + static_cast<std::ptrdiff_t>(Index(left + x, top + y)), 3,
-                    kInk);
-      }
-    }
-  }
-
-  DisplayImage image_;
-};
+constexpr int kLabelHeight = LetteredSheet::kTextHeight + 6;
 
 /// Returns the mean of the pixels [x0, x1) x [y0, y1).
 std::array<float, 3> Mean(const HdrImage& image, int x0, int x1, int y0, int y1) {
@@ -142,7 +54,7 @@ DisplayImage ContactSheet(const std::vector<Thumbnail>& thumbnails) {
   const int rows = (count + columns - 1) / columns;
   const int cell_width = thumbnails[0].image.width + kGap;
   const int cell_height = thumbnails[0].image.height + kLabelHeight + kGap;
-  Sheet sheet(columns * cell_width + kGap, rows * cell_height + kGap);
+  LetteredSheet sheet(columns * cell_width + kGap, rows * cell_height + kGap);
   for (int i = 0; i < count; ++i) {
     const Thumbnail& thumbnail = thumbnails[static_cast<std::size_t>(i)];
     ALPENGLOW_ENSURE(thumbnail.image.width, ==, thumbnails[0].image.width);

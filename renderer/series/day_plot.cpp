@@ -7,14 +7,10 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <string_view>
-#include <utility>
 
-#include "atmosphere/astronomy/time_text.h"
 #include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
-#include "atmosphere/math/constants.h"
 #include "lut/image/svg_elements.h"
+#include "renderer/series/time_axis.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -46,58 +42,27 @@ struct DayPanel {
   std::vector<LightLevel> levels = {};
 };
 
-/// The time axis.
-class TimeAxis {
+/// The place of instants in the plot.
+class PlotTime {
  public:
-  TimeAxis(const std::vector<PlottedMoment>& moments, const std::optional<std::string>& zone)
-      : first_(moments.front().instant),
-        zone_(zone),
-        span_s_(std::max(SecondsBetween(first_, moments.back().instant), 1.0)) {}
+  PlotTime(const std::vector<PlottedMoment>& moments, const std::optional<std::string>& zone)
+      : axis_(moments.front().instant, moments.back().instant, zone) {}
 
   [[nodiscard]] double X(const UtcTime& instant) const {
-    return kLeft + SecondsBetween(first_, instant) / span_s_ * (kWidth - kLeft - kRight);
+    return kLeft +
+           SecondsBetween(axis_.first(), instant) / axis_.span_s() * (kWidth - kLeft - kRight);
   }
-  [[nodiscard]] std::string Local(const UtcTime& instant) const {
-    return zone_ ? FormatInZone(instant, *zone_) : FormatUtc(instant);
-  }
-  /// Returns instants at round local times, with their labels.
-  [[nodiscard]] std::vector<std::pair<UtcTime, std::string>> Ticks() const {
-    const double step_s = Step();
-    const std::string local = Local(first_);
-    const auto digits = [&](std::size_t at) {
-      return ParseWholeNumber(std::string_view(local).substr(at, 2)).value();
-    };
-    const double clock_s = 3600.0 * digits(11) + 60.0 * digits(14) + digits(17);
-    std::vector<std::pair<UtcTime, std::string>> ticks;
-    const double before_s = std::fmod(clock_s, std::min(step_s, kSecondsPerDay));
-    for (double at_s = before_s > 0.0 ? std::min(step_s, kSecondsPerDay) - before_s : 0.0;
-         at_s <= span_s_; at_s += step_s) {
-      // Add half a second, because the text truncates seconds.
-      const std::string text = Local(AddSeconds(first_, at_s + 0.5));
-      ticks.emplace_back(AddSeconds(first_, at_s),
-                         step_s < kSecondsPerDay ? text.substr(11, 5) : text.substr(5, 5));
-    }
-    return ticks;
-  }
+  [[nodiscard]] std::string Local(const UtcTime& instant) const { return axis_.Local(instant); }
+  [[nodiscard]] std::vector<TimeTick> Ticks() const { return axis_.Ticks(kMostTicks); }
 
  private:
-  [[nodiscard]] double Step() const {
-    constexpr double kMost = 13.0;
-    for (const double step_s :
-         {10.0, 60.0, 300.0, 600.0, 1800.0, 3600.0, 7200.0, 10800.0, 21600.0, 43200.0,
-          kSecondsPerDay, 2.0 * kSecondsPerDay, 7.0 * kSecondsPerDay}) {
-      if (span_s_ <= kMost * step_s) return step_s;
-    }
-    return kSecondsPerDay * std::ceil(span_s_ / kSecondsPerDay / kMost);
-  }
+  static constexpr int kMostTicks = 13;
 
-  UtcTime first_;
-  std::optional<std::string> zone_;
-  double span_s_;
+  TimeAxis axis_;
 };
 
 /// Returns the background of the curves, darker for a lower sun: day, three twilights, night.
-std::string BandsOfTwilight(const std::vector<PlottedMoment>& moments, const TimeAxis& time,
+std::string BandsOfTwilight(const std::vector<PlottedMoment>& moments, const PlotTime& time,
                             double top) {
   std::string text;
   for (std::size_t i = 0; i + 1 < moments.size(); ++i) {
@@ -139,7 +104,7 @@ struct PlotRange {
 };
 
 std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& moments,
-                      const TimeAxis& time, const std::function<double(double)>& y) {
+                      const PlotTime& time, const std::function<double(double)>& y) {
   std::string text;
   std::vector<SvgPoint> run;
   const auto end_run = [&] {
@@ -163,7 +128,7 @@ std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& mome
   return text;
 }
 
-std::string GridText(const DayPanel& panel, const PlotRange& range, const TimeAxis& time,
+std::string GridText(const DayPanel& panel, const PlotRange& range, const PlotTime& time,
                      double top, const std::function<double(double)>& y) {
   std::string text;
   for (double value = range.low; value <= range.high + 1e-9; value += range.step) {
@@ -172,8 +137,9 @@ std::string GridText(const DayPanel& panel, const PlotRange& range, const TimeAx
         panel.logarithmic ? fmt::format("1e{:.0f}", value) : fmt::format("{:.0f}", value);
     text += SvgText({kLeft - 6.0, y(value) + 4.0}, "text-anchor=\"end\"", name);
   }
-  for (const auto& tick : time.Ticks())
-    text += SvgLine({time.X(tick.first), top}, {time.X(tick.first), top + kPanelHeight}, kGridLine);
+  for (const TimeTick& tick : time.Ticks())
+    text +=
+        SvgLine({time.X(tick.instant), top}, {time.X(tick.instant), top + kPanelHeight}, kGridLine);
   return text;
 }
 
@@ -191,7 +157,7 @@ std::string LevelText(const LightLevel& level, const std::function<double(double
 }
 
 std::string PanelText(const DayPanel& panel, const std::vector<PlottedMoment>& moments,
-                      const TimeAxis& time, double top) {
+                      const PlotTime& time, double top) {
   const PlotRange range(panel, moments);
   const auto y = [&](double value) {
     return top + kPanelHeight * (range.high - value) / (range.high - range.low);
@@ -252,11 +218,18 @@ const std::vector<LightLevel>& PublishedLightLevels() {
   return levels;
 }
 
-std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
-                     const std::optional<std::string>& zone,
+std::string PlaceText(const Place& place) {
+  const auto text = [](double degrees, const char* positive, const char* negative) {
+    const double rounded = 1e-4 * std::round(1e4 * std::abs(degrees));
+    return fmt::format("{:.6g} {}", rounded, degrees < 0.0 ? negative : positive);
+  };
+  return text(place.latitude_deg, "N", "S") + ", " + text(place.longitude_deg, "E", "W");
+}
+
+std::string SvgOfDay(const std::vector<PlottedMoment>& moments, const PlotTitle& title,
                      const std::vector<LightLevel>& levels) {
   ALPENGLOW_ENSURE(moments.size(), >, 0U);
-  const TimeAxis time(moments, zone);
+  const PlotTime time(moments, title.zone);
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\" font-size=\"12\" font-family=\"Helvetica,Arial,'Liberation "
@@ -264,7 +237,7 @@ std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
       "fill=\"#222\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
       kWidth, kPlotHeight);
   text += SvgText({kLeft, 22.0}, "font-size=\"15\" font-weight=\"bold\"",
-                  fmt::format("{} to {}", time.Local(moments.front().instant),
+                  fmt::format("{}: {} to {}", title.place, time.Local(moments.front().instant),
                               time.Local(moments.back().instant)));
   double top = kTop;
   for (const DayPanel& panel : Panels(levels)) {
@@ -276,7 +249,7 @@ std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
         SvgText({time.X(instant), kPlotHeight - kBottom + 16.0}, "text-anchor=\"middle\"", name);
   return text +
          SvgText({kWidth - kRight, kPlotHeight - 8.0}, "text-anchor=\"end\"",
-                 zone.value_or("UTC")) +
+                 title.zone.value_or("UTC")) +
          "</svg>\n";
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/layer.h"
 
@@ -30,12 +31,21 @@ struct LightLevel {
 /// Electro-Optics Handbook (1974), section 6.
 [[nodiscard]] const std::vector<LightLevel>& PublishedLightLevels();
 
+/// The place and the zone of a plot.
+struct PlotTitle {
+  std::string place;                     // as PlaceText() has it
+  std::optional<std::string> zone = {};  // of times; nothing: UTC
+};
+
+/// Returns the latitude and longitude of a place as text, to 1e-4 degrees: "46.5 N, 8 E".
+[[nodiscard]] std::string PlaceText(const Place& place);
+
 /// Returns three panels over one time axis, in the zone or in UTC: elevations, with twilight bands
 /// in the background; illuminance on a logarithmic axis (values below 1e-5 lx are omitted); EV100.
 /// Curves have gaps where frames have no value. Moments must be in time order. Throws InternalError
 /// if there are none.
 [[nodiscard]] std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
-                                   const std::optional<std::string>& zone,
+                                   const PlotTitle& title,
                                    const std::vector<LightLevel>& levels = {});
 
 }  // namespace alpenglow::renderer

@@ -38,14 +38,8 @@ std::vector<RecordField> FirstFields(const std::vector<RecordField>& more) {
   return fields;
 }
 
-std::vector<RecordField> CsvFields(bool on_path) {
-  std::vector<RecordField> fields = FirstFields({{"ev100", "{:.4f}"}});
-  if (on_path) fields.insert(fields.end(), kPoseFields.begin(), kPoseFields.end());
-  fields.push_back({"exposure"});
-  return fields;
-}
-
-std::vector<RecordField> JsonFields(bool on_path) {
+/// Returns the fields of both manifests.
+std::vector<RecordField> ManifestFields(bool on_path) {
   std::vector<RecordField> fields = FirstFields({{"moon_azimuth_deg", "", 4},
                                                  {"moon_elevation_deg", "{:.4f}"},
                                                  {"moon_illuminated", "{:.4f}"},
@@ -187,7 +181,7 @@ std::string HeaderOfList() { return CsvHeader(ListFields()); }
 std::string ListLineOf(const FrameRecord& record) { return CsvLineOf(record, ListFields()); }
 
 std::string CsvOfManifest(const std::vector<FrameRecord>& records, bool on_path) {
-  const std::vector<RecordField> fields = CsvFields(on_path);
+  const std::vector<RecordField> fields = ManifestFields(on_path);
   std::string text = CsvHeader(fields);
   for (const FrameRecord& record : records) text += CsvLineOf(record, fields);
   return text;
@@ -203,7 +197,7 @@ std::string JsonOfManifest(const std::vector<FrameRecord>& records, const Metada
   }
   text += "},\n\"frames\":[";
   between = "";
-  const std::vector<RecordField> fields = JsonFields(on_path);
+  const std::vector<RecordField> fields = ManifestFields(on_path);
   for (const FrameRecord& record : records) {
     text += fmt::format("{}\n{}", between, JsonObject(record, fields));
     between = ",";

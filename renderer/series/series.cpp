@@ -184,17 +184,20 @@ class Series {
                      [](const PlottedMoment& a, const PlottedMoment& b) {
                        return SecondsBetween(a.instant, b.instant) > 0.0;
                      });
-    WriteTextAtomically(*output_.plot, SvgOfDay(moments, source_.viewpoint.zone));
+    WriteTextAtomically(*output_.plot,
+                        SvgOfDay(moments, {PlaceText(source_.viewpoint.PlaceOf(listed_.front())),
+                                           source_.viewpoint.zone}));
   }
 
   /// Video and keogram take the developed pictures one by one, so the series is never held in
   /// memory.
   void WriteVideoAndKeogram(const std::vector<Frame>& shown) const {
     if (!output_.video && !output_.keogram) return;
-    Keogram keogram;
+    Keogram keogram(static_cast<int>(shown.size()), source_.viewpoint.zone);
     const auto picture = [&](int index) {
-      DisplayImage image = Shown(shown[static_cast<std::size_t>(index)]);
-      if (output_.keogram) keogram.Add(image);
+      const Frame& frame = shown[static_cast<std::size_t>(index)];
+      DisplayImage image = Shown(frame);
+      if (output_.keogram) keogram.Add(frame.instant, image);
       return image;
     };
     const auto count = static_cast<int>(shown.size());

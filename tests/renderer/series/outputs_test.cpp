@@ -33,27 +33,74 @@ TEST(JsonText, SpecialCharactersAreEscaped) {
   EXPECT_EQ(JsonString("a \"b\" c:\\d\n\xC3\xA9"), "\"a \\\"b\\\" c:\\\\d\\u000a\xC3\xA9\"");
 }
 
+UtcTime Hour(double hour) { return {61212, 3600.0 * hour}; }
+
+/// Returns a picture with a bright middle column, whose green is 10 number + row.
+DisplayImage KeogramFrame(int number) {
+  DisplayImage picture{5, 3, std::vector<std::uint8_t>(45, 255)};
+  for (std::size_t y = 0; y < 3; ++y)
+    picture.rgb[3 * (5 * y + 2) + 1] = static_cast<std::uint8_t>(10 * number + static_cast<int>(y));
+  return picture;
+}
+
+Keogram KeogramOf(const std::vector<double>& hours) {
+  Keogram keogram(static_cast<int>(hours.size()), std::nullopt);
+  for (std::size_t i = 0; i < hours.size(); ++i)
+    keogram.Add(Hour(hours[i]), KeogramFrame(static_cast<int>(i)));
+  return keogram;
+}
+
+std::uint8_t GreenAt(const DisplayImage& image, int x, int y) {
+  return image.rgb[static_cast<std::size_t>(3 * (image.width * y + x) + 1)];
+}
+
 TEST(KeogramPicture, HasTheMiddleColumnsOfPicturesInOrder) {
-  Keogram keogram;
-  for (int number = 0; number < 4; ++number) {
-    DisplayImage picture{5, 3, std::vector<std::uint8_t>(45, 255)};
-    for (std::size_t y = 0; y < 3; ++y)
-      picture.rgb[3 * (5 * y + 2) + 1] =
-          static_cast<std::uint8_t>(10 * number + static_cast<int>(y));
-    keogram.Add(picture);
-  }
+  const Keogram keogram = KeogramOf({4.0, 5.0, 6.0, 7.0});
   const DisplayImage image = keogram.Image();
-  ASSERT_EQ(image.width, 4);
-  ASSERT_EQ(image.height, 3);
-  for (std::size_t x = 0; x < 4; ++x) {
-    for (std::size_t y = 0; y < 3; ++y) {
-      EXPECT_EQ(image.rgb[3 * (4 * y + x)], 255);
-      EXPECT_EQ(image.rgb[3 * (4 * y + x) + 1], 10 * x + y);
-    }
+  ASSERT_EQ(image.width, 4 * keogram.columns());
+  ASSERT_EQ(image.height, 3 + Keogram::kScaleHeight);
+  for (int x = 0; x < image.width; ++x) {
+    for (int y = 0; y < 3; ++y)
+      EXPECT_EQ(GreenAt(image, x, y), 10 * (x / keogram.columns()) + y) << x << " " << y;
   }
 }
 
-UtcTime Hour(double hour) { return {61212, 3600.0 * hour}; }
+TEST(KeogramPicture, FramesHaveAtLeastFourColumns) {
+  EXPECT_EQ(Keogram(1, std::nullopt).columns(), Keogram::kMostColumns);
+  EXPECT_EQ(Keogram(64, std::nullopt).columns(), 10) << "640 together";
+  EXPECT_EQ(Keogram(5000, std::nullopt).columns(), 4);
+}
+
+/// Returns the columns that have a tick of the scale.
+std::vector<int> TicksOf(const DisplayImage& image) {
+  std::vector<int> ticks;
+  for (int x = 0; x < image.width; ++x) {
+    const bool begins = GreenAt(image, x, 3) > 100 && (x == 0 || GreenAt(image, x - 1, 3) < 100);
+    if (begins) ticks.push_back(x + 1);  // a tick is two pixels wide
+  }
+  return ticks;
+}
+
+TEST(KeogramPicture, ScaleOfHoursFollowsTheFrames) {
+  std::vector<double> hours;
+  for (int i = 0; i < 20; ++i) hours.push_back(4.5 + 0.25 * i);
+  // 20 frames of 32 columns have room for 8 steps; 4 h 45 min need steps of an hour.
+  EXPECT_THAT(TicksOf(KeogramOf(hours).Image()), testing::ElementsAre(80, 208, 336, 464, 592));
+  hours.back() = 30.0;  // the day ends between the last two frames, which are 21 hours apart
+  EXPECT_THAT(TicksOf(KeogramOf(hours).Image()), testing::SizeIs(testing::Ge(4)));
+}
+
+TEST(KeogramPicture, FramesOutOfOrderHaveNoFalseTicks) {
+  EXPECT_THAT(TicksOf(KeogramOf({9.0, 8.0, 7.0}).Image()), testing::IsEmpty());
+}
+
+const PlotTitle kTitle{"46.5 N, 8 E"};
+
+TEST(DayPlot, TitleHasThePlaceAndTheTimes) {
+  const std::vector<PlottedMoment> moments{{Hour(4.0), 10.0, -5.0}, {Hour(6.0), 20.0, -5.0}};
+  EXPECT_THAT(SvgOfDay(moments, {PlaceText({-33.94612345, 151.177222, 0.0})}),
+              HasSubstr(">33.9461 S, 151.177 E: 2026-06-21T04:00:00Z to 2026-06-21T06:00:00Z<"));
+}
 
 TEST(DayPlot, CurvesHaveGapsWhereFramesHaveNoValue) {
   std::vector<PlottedMoment> moments;
@@ -62,18 +109,18 @@ TEST(DayPlot, CurvesHaveGapsWhereFramesHaveNoValue) {
     if (i < 8 || i > 15) moment.ev100 = 10.0;
     moments.push_back(moment);
   }
-  const std::string svg = SvgOfDay(moments, std::nullopt);
+  const std::string svg = SvgOfDay(moments, kTitle);
   EXPECT_EQ(CountOf(svg, "<polyline"), 4U) << "sun, moon, and two parts of EV; no frame has lux";
   EXPECT_THAT(svg, HasSubstr(">02:00</text>"));
   EXPECT_THAT(svg, HasSubstr(">UTC</text>"));
-  EXPECT_THAT(SvgOfDay(moments, "Asia/Tokyo"), HasSubstr(">Asia/Tokyo</text>"));
+  EXPECT_THAT(SvgOfDay(moments, {"Fuji", "Asia/Tokyo"}), HasSubstr(">Asia/Tokyo</text>"));
 }
 
 TEST(DayPlot, LightIsDrawnByItsLogarithmWithoutZeros) {
   std::vector<PlottedMoment> moments;
   for (int i = 0; i < 5; ++i)
     moments.push_back({Hour(i), 0.0, 0.0, i == 4 ? 0.0 : std::pow(10.0, 4 - 2 * i), 1.0});
-  const std::string svg = SvgOfDay(moments, std::nullopt);
+  const std::string svg = SvgOfDay(moments, kTitle);
   EXPECT_THAT(svg, HasSubstr(">1e4</text>"));
   EXPECT_THAT(svg, HasSubstr(">1e-2</text>"));
   EXPECT_THAT(svg, Not(HasSubstr("\"-inf")));
@@ -83,19 +130,19 @@ TEST(DayPlot, LightIsDrawnByItsLogarithmWithoutZeros) {
 TEST(DayPlot, PublishedLevelsAreDrawn) {
   const std::vector<PlottedMoment> moments{{Hour(0.0), -40.0, 50.0, 0.2, -5.0},
                                            {Hour(1.0), -40.0, 40.0, 0.15, -5.0}};
-  EXPECT_THAT(SvgOfDay(moments, std::nullopt), Not(HasSubstr("full moon")));
-  const std::string svg = SvgOfDay(moments, std::nullopt, PublishedLightLevels());
+  EXPECT_THAT(SvgOfDay(moments, kTitle), Not(HasSubstr("full moon")));
+  const std::string svg = SvgOfDay(moments, kTitle, PublishedLightLevels());
   EXPECT_THAT(svg, HasSubstr(">full moon, high, 0.25 to 0.32</text>"));
   EXPECT_THAT(svg, HasSubstr(">without moon, 0.001</text>"));
   EXPECT_THAT(svg, HasSubstr(">1e-3</text>")) << "the panel reaches as far as the levels";
 }
 
 TEST(DayPlot, OneFrameAndAYearOfFramesHaveTheirTicks) {
-  EXPECT_THAT(SvgOfDay({{Hour(4.0), 10.0, -5.0}}, std::nullopt), HasSubstr(">04:00</text>"));
+  EXPECT_THAT(SvgOfDay({{Hour(4.0), 10.0, -5.0}}, kTitle), HasSubstr(">04:00</text>"));
   std::vector<PlottedMoment> year;
   for (int i = 0; i < 365; ++i) year.push_back({Hour(24.0 * i), 10.0, 0.0});
-  EXPECT_THAT(SvgOfDay(year, std::nullopt), HasSubstr(">06-21</text>"));
-  EXPECT_LT(CountOf(SvgOfDay(year, std::nullopt), "<text"), 60U);
+  EXPECT_THAT(SvgOfDay(year, kTitle), HasSubstr(">06-21</text>"));
+  EXPECT_LT(CountOf(SvgOfDay(year, kTitle), "<text"), 60U);
 }
 
 TEST(JsonManifest, HasTheMoonAndNullForMissingValues) {
@@ -117,6 +164,10 @@ TEST(JsonManifest, HasTheMoonAndNullForMissingValues) {
   const std::string later = JsonOfManifest({record}, {}, true);
   EXPECT_THAT(later, HasSubstr("\"illuminance_lx\":1000,\"ev100\":14.25,"));
   EXPECT_THAT(later, HasSubstr("\"fov\":60.000000}"));
+  const std::string csv = CsvOfManifest({record}, false);
+  EXPECT_THAT(csv,
+              HasSubstr(",moon_azimuth_deg,moon_elevation_deg,moon_illuminated,illuminance_lx,"));
+  EXPECT_THAT(csv, HasSubstr(",1000,14.25,"));
 }
 
 EventDay TromsoInJune() {
@@ -229,7 +280,7 @@ TEST(FrameList, AzimuthsAreInTheHalfOpenCircleAfterRounding) {
   EXPECT_EQ(ListLineOf(record), ",,,0.000,,,359.999,,,\n");
   record.Set("heading", -1e-9);
   record.Set("sun_azimuth_deg", 359.99996);
-  EXPECT_THAT(CsvOfManifest({record}, true), HasSubstr("\n,,,,0.0000,,,,,,,,0.000000,,,,\n"));
+  EXPECT_THAT(CsvOfManifest({record}, true), HasSubstr("\n,,,,0.0000,,,,,,,,,,,,,0.000000,,,\n"));
   record.Set("heading", -90.0);
   EXPECT_THAT(JsonOfManifest({record}, {}, true), HasSubstr("\"heading\":270.000000,"));
 }

@@ -27,6 +27,7 @@
 #include "renderer/scene/scene_fields.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/contact_sheet.h"
+#include "renderer/series/keogram.h"
 #include "renderer/series/manifest.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -455,10 +456,11 @@ TEST_F(SeriesRun, KeogramAndPlotAreMadeOfExistingFrames) {
   Run(Source(), output, 5);
   EXPECT_EQ(renderings_, rendered);
   const DisplayImage keogram = ReadPng(*output.keogram);
-  EXPECT_EQ(keogram.width, 5);
-  EXPECT_EQ(keogram.height, 9);
+  constexpr int kColumns = Keogram::kMostColumns;
+  ASSERT_EQ(keogram.width, 5 * kColumns);
+  EXPECT_EQ(keogram.height, 9 + Keogram::kScaleHeight);
   const DisplayImage third = ReadPng(folder_ / "frame.0003.png");
-  EXPECT_EQ(keogram.rgb[3 * (4 * 5 + 2)], third.rgb[3 * (4 * 16 + 8)]);
+  EXPECT_EQ(keogram.rgb[3 * (4 * 5 * kColumns + 2 * kColumns)], third.rgb[3 * (4 * 16 + 8)]);
   EXPECT_THAT(ContentOf(*output.plot), HasSubstr("<polyline"));
   const std::string with_png = ContentOf(*output.keogram);
   output.png = false;
