@@ -52,7 +52,10 @@ DisplayImage ContactSheet(const std::vector<Thumbnail>& thumbnails) {
   const auto count = static_cast<int>(thumbnails.size());
   const auto columns = static_cast<int>(std::ceil(std::sqrt(count)));
   const int rows = (count + columns - 1) / columns;
-  const int cell_width = thumbnails[0].image.width + kGap;
+  int cell_width = thumbnails[0].image.width;
+  for (const Thumbnail& thumbnail : thumbnails)
+    cell_width = std::max(cell_width, LetteredSheet::TextWidth(thumbnail.label));
+  cell_width += kGap;
   const int cell_height = thumbnails[0].image.height + kLabelHeight + kGap;
   LetteredSheet sheet(columns * cell_width + kGap, rows * cell_height + kGap);
   for (int i = 0; i < count; ++i) {
