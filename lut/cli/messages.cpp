@@ -240,7 +240,7 @@ struct Progress::State {
   }
   void Report() {
     if (form == Form::kBar) DrawBar();
-    if (form == Form::kLines && IsDue(20)) PrintLine();
+    if (form == Form::kLines && IsDue(10)) PrintLine();
     if (form == Form::kJson && IsDue(100)) PrintJson();
   }
   /// Returns whether another of `resolution` equal parts of the work has been completed since the

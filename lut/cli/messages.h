@@ -57,7 +57,7 @@ enum class ProgressStyle { kAuto, kPlain, kJson, kQuiet };
 [[nodiscard]] std::vector<std::string> ProgressStyleNames();
 
 /// Progress on standard error: on a terminal a bar with the remaining time, elsewhere one line per
-/// 5 %, or on request JSON lines
+/// 10 %, or on request JSON lines
 ///   {"label":"frames","done":3,"total":10,"elapsed_s":1.5,"eta_s":3.5}
 /// at most one per percent, with eta_s null until it is known; within a unit with its completed
 /// fraction, as

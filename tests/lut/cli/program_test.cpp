@@ -493,12 +493,12 @@ std::string ProgressText(ProgressStyle style, std::size_t total) {
   });
 }
 
-TEST(Progress, PlainStyleHasALinePerFivePercentAndQuietNone) {
+TEST(Progress, PlainStyleHasALinePerTenPercentAndQuietNone) {
   const std::string text = ProgressText(ProgressStyle::kPlain, 1000);
-  EXPECT_EQ(CountOf(text, "\n"), 20U);
-  EXPECT_THAT(text, HasSubstr("frames: 5 % (50 of 1000)"));
+  EXPECT_EQ(CountOf(text, "\n"), 10U);
+  EXPECT_THAT(text, HasSubstr("frames: 10 % (100 of 1000)"));
   EXPECT_THAT(text, HasSubstr("frames: 100 % (1000 of 1000)"));
-  EXPECT_EQ(CountOf(ProgressText(ProgressStyle::kAuto, 40), "\n"), 20U) << "outside a terminal";
+  EXPECT_EQ(CountOf(ProgressText(ProgressStyle::kAuto, 40), "\n"), 10U) << "outside a terminal";
   EXPECT_EQ(ProgressText(ProgressStyle::kQuiet, 100), "");
 }
 
@@ -550,7 +550,7 @@ TEST(Progress, AdvancesFromManyThreadsAreAllCounted) {
     }
     for (std::thread& thread : threads) thread.join();
   });
-  EXPECT_EQ(CountOf(text, "\n"), 20U);
+  EXPECT_EQ(CountOf(text, "\n"), 10U);
   EXPECT_THAT(text, HasSubstr("100 % (400 of 400)"));
 }
 
