@@ -109,12 +109,12 @@ double PlaneParallelSun::DownAtBase() const {
 }
 
 void PlaneParallelSun::AddScatteredOnce(const CloudRay& ray,
-                                        const PlaneParallelCloud::Crossing& lit, double mu,
+                                        const PlaneParallelCloud::Crossing& lit,
                                         CloudRayParts& parts) const {
   constexpr int kNodes = 16;
   const LayerBeam& beam = cloud_->beam();
   const double scale = beam.peak_scale();
-  const double rise = mu / mu_s_;  // depth to the sun that a unit of depth to the eye adds
+  const double rise = MuOf(ray) / mu_s_;  // depth to the sun that a unit of depth to the eye adds
   const double depth = std::min(lit.along, kOpaqueDepth / scale);
   const double begin = scale * lit.from / mu_s_;
   const double end = begin + scale * (1.0 + rise) * depth;
@@ -137,27 +137,29 @@ void PlaneParallelSun::AddScatteredOnce(const CloudRay& ray,
   }
 }
 
-void PlaneParallelSun::AddSun(const CloudRay& ray, const PlaneParallelCloud::Crossing& crossing,
-                              CloudRayParts& parts) const {
-  PlaneParallelCloud::Crossing lit = crossing;
-  double mu = -ray.direction.z;
-  if (is_from_below_) {
-    lit.from = cloud_->depths().whole() - crossing.from;
-    lit.to = cloud_->depths().whole() - crossing.to;
-    mu = -mu;
-  }
-  const LightWay way{mu, AzimuthFromBeam(ray.direction, to_sun_)};
+PlaneParallelCloud::Crossing PlaneParallelSun::BelowLitSide(
+    PlaneParallelCloud::Crossing crossing) const {
+  if (!is_from_below_) return crossing;
+  crossing.from = cloud_->depths().whole() - crossing.from;
+  crossing.to = cloud_->depths().whole() - crossing.to;
+  return crossing;
+}
+
+double PlaneParallelSun::HigherOrders(const CloudRay& ray,
+                                      const PlaneParallelCloud::Crossing& crossing) const {
+  const PlaneParallelCloud::Crossing lit = BelowLitSide(crossing);
+  const LightWay way{MuOf(ray), AzimuthFromBeam(ray.direction, to_sun_)};
   const double left = std::exp(-lit.scaled);
   const double behind = left > 0.0 ? left * field_.RadianceOfHigherOrders(lit.to, way) : 0.0;
-  parts.higher[0] += left_ * std::max(field_.RadianceOfHigherOrders(lit.from, way) - behind, 0.0);
-  AddScatteredOnce(ray, lit, mu, parts);
+  return left_ * std::max(field_.RadianceOfHigherOrders(lit.from, way) - behind, 0.0);
 }
 
 CloudRayParts PlaneParallelSun::Along(const CloudRay& ray, double length_m) const {
   const auto crossing = cloud_->CrossingOf(ray, length_m);
   if (!crossing) return {};
   CloudRayParts parts = cloud_->Unlit(ray, *crossing);
-  AddSun(ray, *crossing, parts);
+  parts.higher[0] += HigherOrders(ray, *crossing);
+  AddScatteredOnce(ray, BelowLitSide(*crossing), parts);
   return parts;
 }
 

@@ -82,18 +82,24 @@ class PlaneParallelSun {
 
   /// Returns the light along a ray. That of the sun of higher orders is in the first hat.
   [[nodiscard]] CloudRayParts Along(const CloudRay& ray, double length_m) const;
+  /// Returns the light of higher orders that the layer adds along a part of a ray.
+  [[nodiscard]] double HigherOrders(const CloudRay& ray,
+                                    const PlaneParallelCloud::Crossing& crossing) const;
 
   /// Diffuse light through top and base, for unit irradiance across the beam.
   [[nodiscard]] double UpAtTop() const;
   [[nodiscard]] double DownAtBase() const;
 
  private:
-  /// Adds sunlight along a part of a ray.
-  void AddSun(const CloudRay& ray, const PlaneParallelCloud::Crossing& crossing,
-              CloudRayParts& parts) const;
-  /// @param lit  the part, with depths below the lit side. @param mu  of the light that reaches the
-  ///     eye, > 0 towards the lit side.
-  void AddScatteredOnce(const CloudRay& ray, const PlaneParallelCloud::Crossing& lit, double mu,
+  /// Returns a part of a ray with depths below the lit side.
+  [[nodiscard]] PlaneParallelCloud::Crossing BelowLitSide(
+      PlaneParallelCloud::Crossing crossing) const;
+  /// Returns the cosine of the direction of light that reaches the eye, > 0 towards the lit side.
+  [[nodiscard]] double MuOf(const CloudRay& ray) const {
+    return is_from_below_ ? ray.direction.z : -ray.direction.z;
+  }
+  /// @param lit  the part, with depths below the lit side.
+  void AddScatteredOnce(const CloudRay& ray, const PlaneParallelCloud::Crossing& lit,
                         CloudRayParts& parts) const;
 
   std::shared_ptr<const PlaneParallelCloud> cloud_;

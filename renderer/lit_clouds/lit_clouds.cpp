@@ -458,10 +458,23 @@ std::vector<LitClouds::InterfaceLight> LitClouds::Interfaces() const {
     const double low_m = i > 0 ? MiddleOf(i - 1) : -kEndless_m;
     const AltitudeRange gap_m{i > 0 ? RangeOf(i - 1).high_m : 0.0,
                               i < layers() ? RangeOf(i).low_m : kEndless_m};
-    all.push_back({low_m, air_left_[i], AddedAt(i, gap_m.low_m),
-                   layered_ ? Blended(diffuse_[i], layered_->MeanFactor(gap_m)) : diffuse_[i]});
+    all.push_back({low_m, air_left_[i], AddedAt(i, gap_m.low_m), diffuse_[i], {}});
+    if (!layered_) continue;
+    all.back().diffuse = Blended(diffuse_[i], layered_->MeanFactor(gap_m));
+    for (int elevation = 0; elevation < InterfaceLight::kElevations; ++elevation) {
+      for (int azimuth = 0; azimuth < InterfaceLight::kAzimuths; ++azimuth) {
+        const LightWay way = InterfaceLight::WayOfNode(elevation, azimuth);
+        all.back().diffuse_towards.push_back(
+            Blended(diffuse_[i], layered_->FactorTowards(gap_m, way)));
+      }
+    }
   }
   return all;
+}
+
+LightWay LitClouds::InterfaceLight::WayOfNode(int elevation, int azimuth) {
+  const double root = 2.0 * elevation / (kElevations - 1.0) - 1.0;
+  return {-root * std::abs(root), kPi * azimuth / (kAzimuths - 1.0)};
 }
 
 LitClouds::LightAround LitClouds::AroundLayer(std::size_t layer, const LocalLight& sun) const {

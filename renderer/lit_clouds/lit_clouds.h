@@ -61,11 +61,11 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "lut/multiple_scattering/solved_air.h"
-#include "renderer/lit_clouds/cloud_colours.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/illumination/distant_light.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/lit_clouds/cloud_chords.h"
+#include "renderer/lit_clouds/cloud_colours.h"
 #include "renderer/lit_clouds/cloud_layers.h"
 #include "renderer/lit_clouds/cloud_shadow.h"
 #include "renderer/lit_clouds/layer_exchange.h"
@@ -213,6 +213,14 @@ class LitClouds {
     float air_left;    // fraction of the light that the air below sends in a clear sky
     Spectrum added;    // irradiance of a level surface, per unit solar irradiance
     Spectrum diffuse;  // factor on light that the air scatters more than once
+    /// The same along rays of WayOfNode(), azimuths of an elevation after one another. If it is empty, it is the
+    /// same in all directions.
+    std::vector<Spectrum> diffuse_towards;
+
+    static constexpr int kElevations = 16, kAzimuths = 9;
+    /// Returns the way of the light along a ray. With its sine s of elevation, sign(s) sqrt|s| has even
+    /// steps from -1 to 1; azimuths from the light go from 0 to pi.
+    [[nodiscard]] static LightWay WayOfNode(int elevation, int azimuth);
   };
   /// Returns it from the ground up: one more than there are layers.
   [[nodiscard]] std::vector<InterfaceLight> Interfaces() const;

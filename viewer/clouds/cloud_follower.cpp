@@ -36,8 +36,13 @@ CloudColours ColoursOf(const LitClouds& clouds, const CloudTexels& texels) {
     colours.ground_high.push_back(GpuBandsOf(high.ground));
   }
   for (const LitClouds::InterfaceLight& light : clouds.Interfaces()) {
-    colours.interfaces.push_back({static_cast<float>(std::max(light.low_m, -1e6)), light.air_left,
-                                  GpuBandsOf(light.added), GpuBandsOf(light.diffuse)});
+    colours.interfaces.push_back({static_cast<float>(std::max(light.low_m, -1e6)),
+                                  light.air_left,
+                                  GpuBandsOf(light.added),
+                                  GpuBandsOf(light.diffuse),
+                                  {}});
+    for (const Spectrum& towards : light.diffuse_towards)
+      colours.interfaces.back().diffuse_towards.push_back(GpuBandsOf(towards));
   }
   return colours;
 }
@@ -210,7 +215,10 @@ CloudColours Between(const CloudColours& earlier, CloudColours shown, float shar
     CloudColours::Interface& of = shown.interfaces[i];
     const CloudColours::Interface& before = earlier.interfaces[i];
     of = {std::lerp(before.low_m, of.low_m, share), std::lerp(before.left, of.left, share),
-          Mixed(before.added, of.added, share), Mixed(before.diffuse, of.diffuse, share)};
+          Mixed(before.added, of.added, share), Mixed(before.diffuse, of.diffuse, share),
+          std::move(of.diffuse_towards)};
+    if (of.diffuse_towards.size() == before.diffuse_towards.size())
+      Mix(of.diffuse_towards, before.diffuse_towards, share);
   }
   return shown;
 }
@@ -265,7 +273,8 @@ CloudsBlock CloudFollower::BlockFor(const Place& eye, const UtcTime& now) const 
     const float low_m = i < colours.interfaces.size() ? of.low_m : 1e9F;
     block.interfaces[i] = {low_m, of.left, 0.0, 0.0};
     block.added[i] = of.added;
-    block.diffuse[i] = of.diffuse;
+    block.diffuse_towards[i].fill(of.diffuse);
+    std::ranges::copy(of.diffuse_towards, block.diffuse_towards[i].begin());
   }
   return block;
 }

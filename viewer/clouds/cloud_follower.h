@@ -39,6 +39,7 @@ struct CloudColours {
   struct Interface {
     float low_m, left;  // see LitClouds::InterfaceLight
     glm::vec4 added, diffuse;
+    std::vector<glm::vec4> diffuse_towards;  // empty: `diffuse` in all directions
   };
   std::vector<Interface> interfaces;
 };

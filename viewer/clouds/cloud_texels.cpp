@@ -13,6 +13,7 @@
 #include "atmosphere/math/constants.h"
 #include "renderer/clouds/cloud_bricks.h"
 #include "renderer/layers/dense_matrix.h"
+#include "viewer/clouds/plane_parallel_texels.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -264,8 +265,12 @@ CloudLayerTexels LayerTexels(const CloudLight& light) {
                          .voxel_m = lattice.voxel_m.x};
   FillShape(field, layer);
   FillExtinction(field, layer);
-  FillSources(light, layer);
-  FillBeam(light, layer);
+  if (light.plane_parallel() != nullptr) {
+    FillPlaneParallelLight(light, layer);
+  } else {
+    FillSources(light, layer);
+    FillBeam(light, layer);
+  }
   return layer;
 }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "renderer/lit_clouds/lit_clouds.h"
 #include "viewer/clouds/cloud_texels.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
@@ -24,11 +25,15 @@ inline constexpr std::size_t kMostCloudLayers = 4;
 struct CloudsBlock {
   glm::vec4 turn;
   std::array<glm::vec4, 2 * kMostCloudLayers> place, levels, shear, range;
-  std::array<glm::vec4, kMostCloudLayers + 1> interfaces, added, diffuse;
+  std::array<glm::vec4, kMostCloudLayers + 1> interfaces, added;
   std::array<glm::vec4, kMostCloudLayers> sky_low, sky_high, ground_low, ground_high;
+  static constexpr std::size_t kDirections =
+      LitClouds::InterfaceLight::kElevations * LitClouds::InterfaceLight::kAzimuths;
+  std::array<std::array<glm::vec4, kDirections>, kMostCloudLayers + 1> diffuse_towards;
 };
 static_assert(sizeof(CloudsBlock) ==
-              (1 + 8 * kMostCloudLayers + 3 * (kMostCloudLayers + 1) + 4 * kMostCloudLayers) *
+              (1 + 8 * kMostCloudLayers + (2 + CloudsBlock::kDirections) * (kMostCloudLayers + 1) +
+               4 * kMostCloudLayers) *
                   sizeof(glm::vec4));
 
 /// The textures of clouds under one light.

@@ -312,6 +312,13 @@ TEST_F(CloudsInPictures, TowardsALowSunAreNearThoseOfTheRenderer) {
   EXPECT_LT(difference.Quantile(0.99), tests::ScaledDown(0.95, 1.5));
 }
 
+TEST_F(CloudsInPictures, AnOvercastSkyIsThatOfTheRenderer) {
+  const ErrorStatistics difference =
+      ViewDifference(CloudyScene("stratus", kMorning), 2.0, 60.0, 15.0);
+  EXPECT_LT(difference.mean(), 0.03);
+  EXPECT_LT(difference.Quantile(0.99), 0.08);
+}
+
 /// Draws a moving picture with clouds.
 class MovingClouds : public tests::Headless {
  protected:

@@ -21,12 +21,29 @@ struct InterfaceAir {
   float distance_km[CLOUD_LAYERS];  // in order; 1e6: the ray stays in it
   vec4 single[CLOUD_LAYERS], diffuse[CLOUD_LAYERS];
   int number[CLOUD_LAYERS + 1];  // of the interface before each of them, and behind the last
+  vec4 diffuse_factor[CLOUD_LAYERS + 1];  // there
 };
+
+// Returns the factor on light that air at an interface scatters more than once along a ray.
+vec4 DiffuseTowards(int number, vec3 direction) {
+  float root = sign(direction.z) * sqrt(abs(direction.z));
+  float across = length(direction.xy) * length(sun.xy);
+  float cosine = across > 1e-6 ? dot(direction.xy, sun.xy) / across : 1.0;
+  float row = (0.5 + 0.5 * root) * float(DIFFUSE_ELEVATIONS - 1);
+  float column = acos(clamp(cosine, -1.0, 1.0)) / 3.14159265 * float(DIFFUSE_AZIMUTHS - 1);
+  int y = min(int(row), DIFFUSE_ELEVATIONS - 2), x = min(int(column), DIFFUSE_AZIMUTHS - 2);
+  int at = (number * DIFFUSE_ELEVATIONS + y) * DIFFUSE_AZIMUTHS + x;
+  float share = column - float(x);
+  vec4 low = mix(cloud_diffuse_towards[at], cloud_diffuse_towards[at + 1], share);
+  at += DIFFUSE_AZIMUTHS;
+  vec4 high = mix(cloud_diffuse_towards[at], cloud_diffuse_towards[at + 1], share);
+  return mix(low, high, row - float(y));
+}
 
 // Returns the factor on single scattering, and on other light in the air.
 vec4 AirFactor(InterfaceAir of, int stretch, AirTo air) {
-  int number = of.number[stretch];
-  return cloud_interface[number].y * air.single + cloud_diffuse[number] * air.diffuse;
+  return cloud_interface[of.number[stretch]].y * air.single +
+         of.diffuse_factor[stretch] * air.diffuse;
 }
 
 InterfaceAir InterfacesOn(vec3 direction) {
@@ -34,6 +51,7 @@ InterfaceAir InterfacesOn(vec3 direction) {
   float h = EYE_ALTITUDE, mu = direction.z;
   int here = CloudInterfaceAt(1e3 * h);
   of.number[0] = here;
+  of.diffuse_factor[0] = DiffuseTowards(here, direction);
   bool rises = mu >= 0.0;
   for (int i = 0; i < CLOUD_LAYERS; ++i) {
     // The interface that is entered, and the altitude between both.
@@ -45,6 +63,7 @@ InterfaceAir InterfacesOn(vec3 direction) {
                     : DistanceDownTo(h, mu, z, PLANET_RADIUS);
     of.distance_km[i] = is_there ? d : 1e6;
     of.number[i + 1] = is_there ? next : of.number[i];
+    of.diffuse_factor[i + 1] = DiffuseTowards(of.number[i + 1], direction);
     AirTo air = AirToPoint(direction, min(of.distance_km[i], kToSpace_km));
     of.single[i] = air.single;
     of.diffuse[i] = air.diffuse;

@@ -6,6 +6,8 @@
 // While new clouds fade in, both the earlier ones (numbers from MOST_CLOUD_LAYERS on) and the new
 // ones (from 0 on) exist.
 #define MOST_CLOUD_LAYERS 4
+#define DIFFUSE_ELEVATIONS 16
+#define DIFFUSE_AZIMUTHS 9
 
 const float kToSpace_km = 1e3;  // length of a ray that meets no ground
 
@@ -21,11 +23,12 @@ layout(std140) uniform Clouds {
   vec4 cloud_range[2 * MOST_CLOUD_LAYERS];   // lowest and highest cloud [m]; 1: an open field
   vec4 cloud_interface[MOST_CLOUD_LAYERS + 1];  // lowest altitude [m]; beam left in the mean
   vec4 cloud_added[MOST_CLOUD_LAYERS + 1];      // irradiance that layers add
-  vec4 cloud_diffuse[MOST_CLOUD_LAYERS + 1];    // factor on light scattered more than once
   vec4 cloud_sky_low[MOST_CLOUD_LAYERS];        // radiance from above, at the base
   vec4 cloud_sky_high[MOST_CLOUD_LAYERS];       // and at the top of a layer [1/sr]
   vec4 cloud_ground_low[MOST_CLOUD_LAYERS];     // the same from below
   vec4 cloud_ground_high[MOST_CLOUD_LAYERS];
+  // The factor on light scattered more than once along rays, see InterfaceLight of the renderer.
+  vec4 cloud_diffuse_towards[(MOST_CLOUD_LAYERS + 1) * DIFFUSE_ELEVATIONS * DIFFUSE_AZIMUTHS];
 };
 
 uniform sampler3D cloud_sun_map, earlier_cloud_sun_map;

@@ -195,6 +195,8 @@ vec4 GatheredAlong(vec3 direction, float length_km) {
     length_m = max(min(length_m, 4.0 + 0.4 * (code - kSurfaceCode)), least);
     length_m = min(length_m, max(stretch.end - t, 0.0) + 0.01);
     float more = per_m * length_m;
+    offset = OffsetOn(ray, t + 0.5 * length_m);
+    place = vec3(layer.place.xy, 0.0) + offset;
     float to_light = DepthToLight(place, offset);
     float peak_depth = clamp((1.0 - scale) * (to_light + depth + 0.5 * more), kLeastPeakDepth, kDeepestPeak);
     float peak_at = 0.5 / peak_size.y + peak_row * log2(peak_depth / kLeastPeakDepth);
