@@ -280,7 +280,8 @@ TEST(FrameList, AzimuthsAreInTheHalfOpenCircleAfterRounding) {
   EXPECT_EQ(ListLineOf(record), ",,,0.000,,,359.999,,,\n");
   record.Set("heading", -1e-9);
   record.Set("sun_azimuth_deg", 359.99996);
-  EXPECT_THAT(CsvOfManifest({record}, true), HasSubstr("\n,,,,0.0000,,,,,,,,,,,,,0.000000,,,\n"));
+  EXPECT_THAT(CsvOfManifest({record}, true),
+              HasSubstr("\n,,,,0.0000,,,359.9994,,,,,,,,,,0.000000,,,\n"));
   record.Set("heading", -90.0);
   EXPECT_THAT(JsonOfManifest({record}, {}, true), HasSubstr("\"heading\":270.000000,"));
 }
